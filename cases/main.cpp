@@ -122,10 +122,11 @@ CLI::App* add_stability(CLI::App& app, StabilityOptions& options) {
   return command;
 }
 
+/// Options of the command `keys`.
 struct KeysOptions {
   std::string table;
   bool schema = false, markdown = false;
-  std::string renewed;  ///< file whose reference is renewed; empty: the reference is printed
+  std::string renewed;  ///< File whose reference is replaced; empty: the reference is printed.
 };
 
 CLI::App* add_keys(CLI::App& app, KeysOptions& options) {
@@ -137,7 +138,7 @@ CLI::App* add_keys(CLI::App& app, KeysOptions& options) {
   return command;
 }
 
-/// Columns of the screen; 100 where it is none.
+/// Returns the number of columns of the terminal; 100 if the output is not a terminal.
 size_t screen_width() {
   winsize size{};
   const bool known = isatty(STDOUT_FILENO) && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
@@ -154,7 +155,7 @@ void print_keys(const KeysOptions& options) {
   std::fputs(text.c_str(), stdout);
 }
 
-/// What completion knows of the commands.
+/// Returns the names and options of all commands, for the completion script of a shell.
 std::vector<CommandWords> command_words(const CLI::App& app) {
   std::vector<CommandWords> out;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -173,7 +174,8 @@ std::vector<CommandWords> command_words(const CLI::App& app) {
   return out;
 }
 
-/// @throws Error (input) for a first word that is neither a command nor an option.
+/// Verifies the first argument of the program.
+/// @throws Error (input) for an argument that is neither a command nor an option.
 void refuse_unknown_command(const CLI::App& app, const std::string& word) {
   if (word.empty() || word[0] == '-') return;
   std::vector<std::string> names;
@@ -189,18 +191,18 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
                                     : ", did you mean '" + close + "'?"));
 }
 
-/// What stands in buffers goes out, or is missed: a full disk, a closed pipe.
-/// @throws Error (input).
+/// Flushes the standard output.
+/// @throws Error (input) if it cannot be written, for example on a full disk or a closed pipe.
 void finish_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     throw Error::input("the output cannot be written: " + std::generic_category().message(errno));
 }
 
-/// A command of the program: its options, and what it does.
+/// A command of the program: its options, and the function that executes it.
 struct Command {
   CLI::App* app;
   std::function<int()> run;
-  bool computes = true;  ///< whether it needs the buffers of OpenBLAS
+  bool computes = true;  ///< True if the command needs the buffers of OpenBLAS.
 };
 
 Command run_command(CLI::App& app, RunOptions& options) {
@@ -290,7 +292,7 @@ Command completion_command(CLI::App& app, std::string& shell) {
           false};
 }
 
-/// Options of all commands.
+/// The options of all commands.
 struct AllOptions {
   RunOptions run;
   CompareOptions compare;
@@ -304,7 +306,7 @@ struct AllOptions {
   std::string shell;
 };
 
-/// The commands in the order in which the help lists them.
+/// Returns the commands in the order of the help text.
 std::vector<Command> commands_of(CLI::App& app, AllOptions& all) {
   std::vector<Command> out = {run_command(app, all.run), check_command(app, all.run)};
   out.push_back({add_compare(app, all.compare, all.compared_cycles), [&] {
@@ -335,7 +337,7 @@ int parse_and_run(int argc, char** argv) {
   AllOptions options;
   std::vector<Command> commands = commands_of(app, options);
   CLI::App* help = app.add_subcommand("help", "this list");
-  const std::string all_help = app.help();  // later it would be that of one command
+  const std::string all_help = app.help();  // after parsing it would be the help of one command
   commands.push_back({help,
                       [&] {
                         std::fputs(all_help.c_str(), stdout);
@@ -363,10 +365,11 @@ int parse_and_run(int argc, char** argv) {
 
 }  // namespace
 
-/// Exit codes: 0 done, 1 a defect of the program, 2 bad input, 3 numerical failure, 4 interrupted,
-/// 5 done, but an expectation of the case was missed, or the result is of no use.
+/// Runs the program. Exit codes: 0 done, 1 defect of the program, 2 invalid input, 3 numerical
+/// failure, 4 interrupted, 5 done, but an expectation of the case is violated or the result is not
+/// usable.
 int main(int argc, char** argv) {
-  const flexmorph::PlainNumbers plain;  // messages, too
+  const flexmorph::PlainNumbers plain;  // also for numbers in messages
   try {
     const int code = parse_and_run(argc, argv);
     finish_output();

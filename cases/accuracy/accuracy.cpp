@@ -23,13 +23,13 @@ namespace fs = std::filesystem;
 
 const std::vector<std::pair<double, std::string>> kTargets = {
     {1e-2, "1pct"}, {1e-3, "0.1pct"}, {1e-4, "0.01pct"}};
-constexpr double kReserve = 0.25;                   // of the budget, for verification
-const std::vector<double> kShares = {1, 0.3, 0.1};  // of a target, tried one after the other
-constexpr double kMotionShare = 0.2;                // of the time that a design takes
-// A run may take so many times what was predicted, and so long in any case [s].
+constexpr double kReserve = 0.25;                   // share of the budget for verification
+const std::vector<double> kShares = {1, 0.3, 0.1};  // fractions of a target, tried in this order
+constexpr double kMotionShare = 0.2;                // factor of the cost exponent, for designs
+// Largest ratio of the time limit of a run to its predicted time, and smallest time limit [s].
 constexpr double kPatience = 6, kMinTimeLimit = 5;
 
-const char* const kEnded = "ended after";  // the message of runs that exceeded their time limit
+const char* const kEnded = "ended after";  // message of runs that exceeded their time limit
 
 int unknowns_of(const PreparedCase& prepared, Part part) {
   if (part == Part::motion) return prepared.mechanism().model.n_dofs();
@@ -39,14 +39,14 @@ int unknowns_of(const PreparedCase& prepared, Part part) {
   return out;
 }
 
-/// Is a parameter of this name asked for, itself or as the leader of its group?
+/// Tells whether a parameter is requested by its name, or as the leader of a requested parameter.
 bool is_wanted(const Parameter& each, const std::vector<std::string>& names) {
   return names.empty() || std::any_of(names.begin(), names.end(), [&](const std::string& name) {
            return name == each.name || parameter(name).group == each.name;
          });
 }
 
-/// Runs the levels of a case and keeps their results.
+/// The accuracy study of a case: it runs the levels and collects their results.
 class Measurement {
  public:
   explicit Measurement(const AccuracyOptions& options)
@@ -104,7 +104,8 @@ class Measurement {
     }
   }
 
-  /// Returns the names of the option, else those of the case. @throws Error (input), located.
+  /// Returns the names of parameters from the options or, without them, from the case.
+  /// @throws Error (input), with location, for an unknown name
   std::vector<std::string> wanted_names() const {
     for (const std::string& name : options_.ladders) parameter(name);
     if (!options_.ladders.empty()) return options_.ladders;
@@ -116,7 +117,7 @@ class Measurement {
     return scene_.accuracy->ladders;
   }
 
-  /// Adds the series of the parts that quantities belong to.
+  /// Adds the series of the requested parameters for the subproblems of the quantities.
   void add_series() {
     const std::vector<std::string> names = wanted_names();
     for (const Parameter& each : parameters()) {
@@ -156,7 +157,7 @@ class Measurement {
     }
   }
 
-  /// Optimizes the case; all levels analyse the resulting designs.
+  /// Optimizes the case. All levels then analyse the optimized designs.
   void optimize() {
     const Variant one{
         "optimized", {"output.vtk=false", "output.plots=false", "output.sharp_every=0", "verify="}};
@@ -188,8 +189,9 @@ class Measurement {
     return out;
   }
 
-  /// Returns the last time that a quantity of the motion asks for, where that is before the end.
-  /// (The default of a spin-up depends on the end.)
+  /// Returns the last time at which a quantity of the motion is needed, if it is before the end of
+  /// the motion. A start from a static hub has no such time, because the default duration of its
+  /// spin-up depends on the end time.
   std::optional<double> last_time() const {
     if (scene_.domain || scene_.statics || scene_.time.start == Start::hub_at_rest) return {};
     double out = 0;
@@ -201,8 +203,8 @@ class Measurement {
     return out > 0 && out < scene_.time.end ? std::optional(out) : std::nullopt;
   }
 
-  /// Measures a level by a run, or by what an earlier run has left.
-  /// @param limit  of its CPU time [s]; 0: none
+  /// Measures a level by a run, or reads the results of an earlier run of the level.
+  /// @param limit  limit of the CPU time [s]; 0 means no limit
   void measure(Part part, const std::string& name, LevelRun& run, double limit) {
     runs_.time_limit = limit;
     const VariantResult result = result_of(variant(part, name, run.level));
@@ -212,7 +214,7 @@ class Measurement {
     run.message = result.message;
     run.seconds_cpu = result.seconds_cpu;
     run.memory = result.peak_memory_bytes;
-    // The time of an earlier run counts, too: the same levels are reached again.
+    // The time of an earlier run counts too, so that a repeated study measures the same levels.
     const bool ended = result.message.starts_with(kEnded);
     if (ended || std::isfinite(result.seconds_cpu)) spent_ += ended ? limit : result.seconds_cpu;
     for (size_t q = 0; result.done() && q < study_.interests.size(); ++q)
@@ -225,13 +227,14 @@ class Measurement {
     std::fflush(stdout);
   }
 
-  /// Measures levels, short ones first, as far as the budget goes.
+  /// Measures levels, beginning with short runs, until the budget is used.
   void measure_levels() {
     for (RefinementSeries& series : study_.series) {
       const LevelRun& own = study_.own.at(series.part);
       const std::string& group = series.parameter->group;
       const bool of_motion = group == "elements" || group == "step";
-      // A design takes its time with the loads, not with the motion that they come from.
+      // Most of the run time of a design is spent on its load sets, not on the motion that supplies
+      // them, so parameters of the motion change the run time less.
       series.cost_factor = series.part == Part::design && of_motion ? kMotionShare : 1;
       series.first_guess = own.seconds_cpu;
       for (LevelRun& run : series.levels) {
@@ -253,10 +256,11 @@ class Measurement {
     }
   }
 
-  /// Errors of parameters may not add up: settings for a part of the target are tried, too.
+  /// Returns the recommendation for a target. Errors of parameters do not always add up, so
+  /// settings for a fraction of the target are tried if the first recommendation is withdrawn.
   Recommendation recommended(double target, const std::string& name) {
     const std::string file = scene_.name + "_" + name + ".toml";
-    fs::remove(path(file));  // of an earlier study
+    fs::remove(path(file));  // file of an earlier study
     Recommendation first;
     for (size_t attempt = 0; attempt < kShares.size(); ++attempt) {
       Recommendation r = recommend(study_, target, kShares[attempt]);
@@ -265,7 +269,7 @@ class Measurement {
         run_recommended(attempt == 0 ? name : name + "_" + std::to_string(attempt + 1), r);
       else if (!r.names.empty())
         r.sentence = "not verified";
-      // After an attempt that was withdrawn, only a run can show that another one holds.
+      // After a withdrawn attempt, another recommendation is valid only if a run has verified it.
       const bool stands = !r.withdrawn && (attempt == 0 || r.verified);
       if (stands && !r.names.empty()) write_case(file, r);
       if (stands && !r.withdrawn) return r;
@@ -299,11 +303,13 @@ class Measurement {
     verify(study_, values, seconds, r);
   }
 
-  /// Writes the case with these settings; it finds the files that it names from its new folder.
+  /// Writes the case with the recommended settings. The paths of files in the case become absolute,
+  /// so that the case can be read from its new folder.
   void write_case(const std::string& file, Recommendation& r) const {
     std::vector<std::string> overrides = r.overrides;
     for (std::string& each : overrides_of_files(file_)) overrides.push_back(std::move(each));
-    // The final run of a design is on a finer mesh than the case's own, maybe not than this one.
+    // The mesh of [verify] is finer than the mesh of the case, but perhaps not finer than the
+    // recommended mesh, so [verify] is removed.
     if (scene_.verify && std::any_of(r.overrides.begin(), r.overrides.end(), [](const auto& each) {
           return each.find(".elements=") != std::string::npos;
         }))
@@ -325,9 +331,9 @@ class Measurement {
   PreparedCase prepared_;
   const Scene& scene_;
   StudyOptions runs_;
-  double budget_ = 0, spent_ = 0;  // CPU time of all runs [s]
+  double budget_ = 0, spent_ = 0;  // allowed and used CPU time of all runs [s]
   int n_runs_ = 0;
-  std::vector<std::string> starts_;  // overrides that say where the designs start
+  std::vector<std::string> starts_;  // overrides that set the starts of the designs
   AccuracyStudy study_;
 };
 

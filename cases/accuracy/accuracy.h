@@ -4,24 +4,31 @@
 
 namespace flexmorph::cases {
 
+/// Options of the command `accuracy`.
 struct AccuracyOptions {
-  StudyOptions study;
-  std::string budget = "120s";       ///< CPU time of all runs, see read_budget()
-  std::vector<std::string> ladders;  ///< names of parameters; empty: as the case says, or all
-  bool verify = true;                ///< run what is recommended, where the budget allows
+  StudyOptions study;           ///< Options of the study.
+  std::string budget = "120s";  ///< CPU time of all runs, see read_budget().
+
+  /// Names of discretization parameters; empty means the parameters that the case names, or all.
+  std::vector<std::string> ladders;
+
+  bool verify = true;  ///< True if recommended settings are verified by runs within the budget.
 };
 
-/// Returns the seconds of "120s", "2min", "1.5h", or of a number of seconds.
+/// Returns the time of "120s", "2min", "1.5h", or of a number of seconds without unit [s].
 /// @throws Error (input) for other texts.
 double read_budget(const std::string& text);
 
-/// Measures error against run time of a case: refinement series of its parameters, their limits by
-/// extrapolation, and the cheapest settings for 1 %, 0.1 % and 0.01 %. Writes accuracy.csv, .md,
-/// .svg and CASE_1pct.toml ... in the study's folder and prints the tables. Levels are runs of this
-/// program, one after the other, in folders of their own; finished ones are not run again.
-/// @return exit code: 0, 4 when interrupted (what was measured is kept)
-/// @throws Error (input) for a case that is refused, or without a quantity, naming those there are;
-///         Error (numerical) when the case itself fails. A level that fails is a finding.
+/// Measures the error and the run time of a case for refinement series of its discretization
+/// parameters. It extrapolates the limits of the series and determines the cheapest settings for
+/// errors of 1 %, 0.1 % and 0.01 %. Writes accuracy.csv, .md, .svg and CASE_1pct.toml ... into the
+/// folder of the study and prints the tables. Every level is a run of this program in a folder of
+/// its own; the runs are sequential, and finished runs are not repeated. A level that fails is
+/// reported as a result.
+/// @return exit code: 0, or 4 if interrupted (the measured levels are kept)
+/// @throws Error (input) for a case that is refused, or for a case without a quantity of interest
+///         (the message names the existing quantities); Error (numerical) if the unchanged case
+///         fails
 int accuracy_case(const AccuracyOptions& options);
 
 }  // namespace flexmorph::cases

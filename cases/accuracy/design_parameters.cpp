@@ -19,7 +19,8 @@ std::string no_loads(const Scene& scene, Part part) {
   return scene.esl && !scene.domain ? "" : "loads are given, not those of a motion";
 }
 
-/// Whole numbers of loads up to the very end: else the last load moves.
+/// Returns levels with a whole number of load times up to the end of the motion. With other numbers
+/// the time of the last load would change between levels.
 Levels load_levels(const Scene& scene, const io::CaseFile&) {
   Levels out;
   for (const double factor : {20.0, 10.0, 5.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.2, 0.1}) {
@@ -43,9 +44,9 @@ std::string design_key(size_t design, const std::string& rest) {
   return "design." + std::to_string(design) + "." + rest + "=";
 }
 
-/// Returns the overrides of one design on cells `size`/`own` times as many in each direction. The
-/// band, the erosion and the smooth maximum stay as many cells: finer cells show sharper
-/// components.
+/// Returns the overrides of one design with `size`/`own` times the number of cells in each
+/// direction. The band, the erosion and the smooth maximum keep their sizes measured in cells.
+/// Therefore components have sharper edges on finer cells.
 Overrides refine_design(const BodyDesign& d, const io::Table& t, size_t index, int own, int size) {
   Overrides out;
   const double finer = static_cast<double>(size) / own;
@@ -61,7 +62,8 @@ Overrides refine_design(const BodyDesign& d, const io::Table& t, size_t index, i
     for (size_t k = 0; k < regions.size(); ++k) {
       if (!regions[k].has(design_keys::kStrip)) continue;
       const int cells = regions[k].integer(design_keys::kStripCells);
-      // Not a whole number: no level, for the strip would be another.
+      // If the number is not whole, the case is refused and so is the level, because the strip
+      // would have another width.
       out.push_back(design_key(index, name + "." + std::to_string(k) + ".cells") +
                     to_text(cells * finer));
     }
@@ -99,9 +101,10 @@ std::string no_band(const Scene& scene, Part part) {
   return no_design(scene, part);
 }
 
-/// Returns levels of a value of all designs times factors.
-/// @param h      of a factor
-/// @param value  of a design and a factor: its name, and its text in a case file
+/// Returns levels in which a value of all designs is multiplied by factors.
+/// @param h      function that returns the parameter h of a factor
+/// @param value  function that returns, for a design and a factor, the name of a level and the
+///               value as text of a case file
 Levels scaled_levels(const Scene& scene, const std::string& key, const std::vector<double>& factors,
                      double (*h)(double factor),
                      std::pair<std::string, std::string> (*value)(const BodyDesign& design,
@@ -140,12 +143,13 @@ Levels void_levels(const Scene& scene, const io::CaseFile&) {
                        });
 }
 
-/// The smooth maximum over components: ln(n) / sharpness above the maximum of n equal ones.
+/// Returns levels of the sharpness of the smooth maximum over components. The smooth maximum of n
+/// equal components exceeds their maximum by ln(n) / sharpness.
 Levels sharpness_levels(const Scene& scene, const io::CaseFile&) {
   return scaled_levels(
       scene, "sharpness", {0.25, 0.5, 1, 2, 4, 8, 16}, [](double factor) { return 1 / factor; },
       [](const BodyDesign& d, double factor) {
-        const double sharpness = d.tdf.sharpness * d.grid.dx() * factor;  // per cell, as in a case
+        const double sharpness = d.tdf.sharpness * d.grid.dx() * factor;  // [1/cell]
         return std::pair(to_text(sharpness, 4), to_text(sharpness));
       });
 }
@@ -159,7 +163,8 @@ std::optional<Theory> sharpness_theory(const Scene&, Part, const std::string&) {
       "(order 1), where they cross it does so on a strip as narrow (order 2)");
 }
 
-/// Displacements under a force at a point of a plane continuum are infinite, and so is its work.
+/// Returns the theory for the size of cells. A point force on a plane continuum causes an infinite
+/// displacement and therefore an infinite compliance, so there is no limit then.
 std::optional<Theory> cell_theory(const Scene& scene, Part, const std::string& quantity) {
   const auto is_point = [](const PlaneForce& f) { return f.place.kind == Place::Kind::point; };
   const bool points =

@@ -35,21 +35,23 @@ bool all_beams(const Scene& scene) {
 }
 bool is_explicit(const Scene& scene) { return scene.time.integrator == "minimal_coordinates"; }
 
-/// Is there a motion behind this part?
+/// Tells whether the scene has a motion.
 bool moves(const Scene& scene) { return !scene.domain && !scene.statics; }
 
 std::string key(const std::string& body, const std::string& rest) {
   return "body." + body + "." + rest + "=";
 }
 
-/// A number of elements `factor` times as large; nothing where that is no whole number.
+/// Returns the number of elements times `factor`; nothing if the result is not a whole number.
 std::optional<int> times(int count, double factor) {
   const double exact = count * factor;
   if (exact < 0.5 || std::abs(exact - std::round(exact)) > 1e-9) return {};
   return static_cast<int>(std::lround(exact));
 }
 
-/// A strip of one element across stays one on coarser meshes, a beam on all.
+/// Returns the number of elements across the axis, times `factor`; nothing if it is not a whole
+/// number. A beam always has one element across. A strip with one element across keeps it on
+/// coarser meshes.
 std::optional<int> across(const Body& b, double factor) {
   if (!b.row->across || (b.elements[1] == 1 && factor < 1)) return 1;
   return times(b.elements[1], factor);
@@ -61,9 +63,10 @@ std::string no_elements(const Scene& scene, Part) {
   return "";
 }
 
-constexpr int kMaxAlong = 64;  // elements of levels that are more than four times as fine
+constexpr int kMaxAlong = 64;  // largest number of elements along the axis for factors above 4
 
-/// All bodies refined together, limits of boundary elements with them.
+/// Returns levels in which all bodies are refined by the same factor. The length limits of boundary
+/// elements scale with the elements.
 Levels mesh_levels(const Scene& scene, const io::CaseFile&) {
   Levels out;
   for (const double factor : {0.25, 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0}) {
@@ -139,8 +142,8 @@ std::string no_model(const Scene& scene, Part) {
   return all_beams(scene) ? "" : "\"gcm\" and \"ecm\" are models of beams";
 }
 
-/// The other beam model on all meshes: not an approximation of the case's own, so its errors are
-/// the difference of the models.
+/// Returns levels of the alternative beam model on all meshes. This model does not approximate the
+/// model of the case, so its errors contain the difference of the models.
 Levels model_levels(const Scene& scene, const io::CaseFile& file) {
   Levels out = mesh_levels(scene, file);
   for (Level& level : out) {
@@ -204,8 +207,9 @@ std::string no_explicit(const Scene& scene, Part part) {
   return no_time_or_design(scene, part);
 }
 
-/// Returns levels of steps that adapt.
-/// @param own  tolerance of the case itself; 0: its steps do not adapt in this way
+/// Returns levels of adaptive time steps.
+/// @param own     tolerance of the case; 0: the case does not use this kind of adaptive steps
+/// @param change  override that selects this kind of adaptive steps
 Levels tolerance_levels(const std::vector<double>& tolerances, double own,
                         const std::string& change) {
   Levels out;

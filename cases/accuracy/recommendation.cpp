@@ -22,7 +22,8 @@ double worst(const std::vector<double>& errors) {
   return errors.empty() ? 0 : *std::max_element(errors.begin(), errors.end());
 }
 
-/// Visits all choices, depth first over the groups; leaves branches that exceed the target.
+/// A depth-first search over the groups for the cheapest choice. Branches whose errors exceed the
+/// target are pruned.
 struct Search {
   const std::vector<Group>& groups;
   double target;
@@ -54,7 +55,7 @@ struct Search {
   }
 };
 
-/// May a level be recommended by its error in this quantity?
+/// Tells whether the error of a level in a quantity is reliable enough to recommend the level.
 bool is_sound(const AccuracyStudy& study, const RefinementSeries& series, const LevelRun& run,
               size_t q, double target) {
   const RefinementSeries* leader = leader_of(study, series.parameter->group, series.part);
@@ -62,11 +63,12 @@ bool is_sound(const AccuracyStudy& study, const RefinementSeries& series, const 
   const Limit& limit = leader->limits[q];
   if (limit.converged) return run.measured() || run.status == "cut";
   if (!limit.bounded() || !run.measured()) return false;
-  if (&series == leader && run.errors[q] == 0) return true;  // it stands for the limit
+  if (&series == leader && run.errors[q] == 0) return true;  // its value is taken as the limit
   return kClearance * limit.uncertainty / study.estimates[q].scale <= target;
 }
 
-/// Returns the level of a parameter with these settings in a part, with its series.
+/// Returns the series and the index of the level of a parameter with the given overrides in a
+/// subproblem; a null series if there is no such level.
 std::pair<const RefinementSeries*, size_t> level_in(const AccuracyStudy& study,
                                                     const Parameter* parameter,
                                                     const std::vector<std::string>& overrides,
@@ -110,7 +112,7 @@ std::vector<bool> covered(const AccuracyStudy& study, double target) {
   return out;
 }
 
-/// Returns the quantities that a recommendation is not about, and why.
+/// Returns a message on the quantities that a recommendation does not cover, with the reasons.
 std::string left_out(const AccuracyStudy& study, const std::vector<bool>& covers) {
   std::string out;
   for (size_t q = 0; q < covers.size(); ++q) {
@@ -192,7 +194,7 @@ void verify(const AccuracyStudy& study, const std::vector<double>& values, doubl
     const Estimate& estimate = study.estimates[q];
     const double error = std::abs(values[q] - estimate.value) / estimate.scale;
     out.measured_error = std::isnan(error) ? error : std::max(out.measured_error, error);
-    if (error <= kTargetFactor * out.target) continue;  // NaN is not
+    if (error <= kTargetFactor * out.target) continue;  // false for NaN
     out.sentence += (out.withdrawn ? "; " : "withdrawn: ") + study.interests[q].words() +
                     " is off by " + percent(error) + " where " + percent(out.target) +
                     " is the target, so the errors of the parameters do not add up";

@@ -13,13 +13,13 @@ namespace {
 using io::to_text;
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr double kMinError = 1e-12;  // in plots: less is rounding
+constexpr double kMinError = 1e-12;  // smallest error in plots; smaller ones are rounding
 
 std::string percent(double share) {
   return std::isfinite(share) ? to_text(100 * share, 2) + " %" : "?";
 }
 
-/// Returns the indices of the quantities of a part.
+/// Returns the indices of the quantities of a subproblem.
 std::vector<size_t> quantities_of(const AccuracyStudy& study, Part part) {
   std::vector<size_t> out;
   for (size_t q = 0; q < study.parts.size(); ++q)
@@ -27,7 +27,8 @@ std::vector<size_t> quantities_of(const AccuracyStudy& study, Part part) {
   return out;
 }
 
-/// Returns the order of the triple whose finest level this is.
+/// Returns the order of the triple of levels whose finest level is the given one, as text; empty if
+/// there is no such triple, "-" if the triple has no order.
 std::string order_at(const RefinementSeries& series, size_t level, size_t q) {
   const std::vector<double>& orders = series.limits[q].orders;
   size_t before = 0;
@@ -83,7 +84,7 @@ Rows series_rows(const AccuracyStudy& study, const RefinementSeries& series) {
   return rows;
 }
 
-/// Returns a sentence per quantity, and one on the levels that were cut.
+/// Returns a message per quantity, and a message on the levels that were cut by the budget.
 std::vector<std::string> series_sentences(const AccuracyStudy& study,
                                           const RefinementSeries& series) {
   const std::string& group = series.parameter->group;
@@ -158,7 +159,8 @@ io::Curve curve_of(const std::string& name, std::optional<size_t> color, bool da
   return out;
 }
 
-/// Plots the error of the whole run, where its limit is known, against its CPU time.
+/// Plots errors of a quantity against CPU time. They are the errors of all parameters together if
+/// the limit of the quantity is bounded, else the errors against the limits of the series.
 io::Panel times_panel(const AccuracyStudy& study, size_t q) {
   const Estimate& estimate = study.estimates[q];
   const bool whole = estimate.has_limit && std::isfinite(estimate.uncertainty);
@@ -200,7 +202,7 @@ io::Panel times_panel(const AccuracyStudy& study, size_t q) {
   return out;
 }
 
-/// Plots errors against the limits of the series, with the orders of those that converge.
+/// Plots errors against the discretization parameters, with the fitted orders of converged series.
 io::Panel parameters_panel(const AccuracyStudy& study, size_t q) {
   io::Panel out;
   out.title = study.interests[q].words() + ": error against the parameters";

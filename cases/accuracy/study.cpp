@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Fills the errors of levels against the limit of their group; of cut ones by its order.
+/// Computes the errors of the levels of a series against the limit of the group. Errors of levels
+/// that were cut by the budget are predicted by the order of convergence.
 void find_errors(const AccuracyStudy& study, RefinementSeries& series, size_t q) {
   const RefinementSeries* leader = leader_of(study, series.parameter->group, series.part);
   if (!leader || !std::isfinite(leader->limits[q].value)) return;
@@ -31,7 +32,8 @@ void find_errors(const AccuracyStudy& study, RefinementSeries& series, size_t q)
     else if (run.status == "cut" && extrapolates)
       error = error_of(*finest) * std::pow(run.level.h / finest->level.h, limit.order);
     if (!std::isfinite(error)) continue;
-    // Where values cross their limit, a coarse level is not better than the next.
+    // If the values cross the limit, the error of a coarse level may be small by chance. It is set
+    // to the largest error of the finer levels.
     largest = std::max(largest, error);
     run.errors[q] = series.parameter->has_limit ? largest : error;
   }
@@ -52,7 +54,7 @@ void find_limits(AccuracyStudy& study, RefinementSeries& series) {
   }
 }
 
-/// Adds up what is missing to the limits of all groups.
+/// Adds the differences between the limits of all groups and the value of the case.
 void add_limits(const AccuracyStudy& study, size_t q, Estimate& out) {
   out.value = out.own;
   for (const RefinementSeries& series : study.series) {

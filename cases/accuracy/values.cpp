@@ -19,12 +19,12 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Is the quantity a number of run.json?
+/// Tells whether the quantity is a number of run.json.
 bool is_of_run(const Scene& scene, const std::string& name) {
   return name.starts_with(scene.statics ? "static." : "motion.");
 }
 
-/// Returns the value of Lagrange's polynomial through rows first .. first + count - 1.
+/// Returns the value at `at` of the Lagrange polynomial through rows first .. first + count - 1.
 double interpolated(const std::vector<double>& x, const std::vector<double>& y, size_t first,
                     size_t count, double at) {
   double out = 0;
@@ -37,14 +37,15 @@ double interpolated(const std::vector<double>& x, const std::vector<double>& y, 
   return out;
 }
 
-/// Returns the largest size, by a parabola through the largest row and its neighbours.
+/// Returns the largest absolute value: the extremum of a parabola through the largest row and its
+/// neighbours.
 double largest_size(const std::vector<double>& x, const std::vector<double>& y) {
   size_t top = 0;
   for (size_t i = 0; i < y.size(); ++i)
     if (std::abs(y[i]) > std::abs(y[top])) top = i;
   const double peak = std::abs(y[top]);
   if (top == 0 || top + 1 == y.size()) return peak;
-  // Newton's form about the row: y = y₀ + s (x - x₀) + c (x - x₀)(x - x₋).
+  // Newton's form of the parabola about the largest row: y = y₀ + s (x - x₀) + c (x - x₀)(x - x₋).
   const double hm = x[top] - x[top - 1], hp = x[top + 1] - x[top];
   const double left = (peak - std::abs(y[top - 1])) / hm,
                right = (std::abs(y[top + 1]) - peak) / hp;
@@ -52,7 +53,8 @@ double largest_size(const std::vector<double>& x, const std::vector<double>& y) 
   return c < 0 ? peak - slope * slope / (4 * c) : peak;
 }
 
-/// Returns the value of a column; where a mesh changes, the second of two rows at one time counts.
+/// Returns the value of a column of a table. A mesh change produces two rows at one time, of which
+/// the second row is used.
 double column_value(const io::CsvTable& table, const std::string& abscissa,
                     const Interest& interest) {
   const std::vector<double> x = table.numbers(abscissa), y = table.numbers(interest.name);
@@ -68,12 +70,12 @@ double column_value(const io::CsvTable& table, const std::string& abscissa,
   return places.empty() ? kNone : value_at(places, values, interest);
 }
 
-/// Returns the number of a JSON object at a path with dots; NaN: there is none.
+/// Returns the number of a JSON object at a dotted path; NaN if there is none.
 double json_value(const nlohmann::json& run, const std::string& path) {
   const nlohmann::json* here = &run;
   for (size_t begin = 0; begin <= path.size();) {
     const size_t dot = std::min(path.find('.', begin), path.size());
-    // Names of columns hold dots themselves: the whole rest may be the key.
+    // Names of columns may contain dots, so the whole remaining path may be one key.
     if (const std::string rest = path.substr(begin); here->is_object() && here->contains(rest)) {
       here = &(*here)[rest];
       break;
@@ -86,7 +88,8 @@ double json_value(const nlohmann::json& run, const std::string& path) {
   return here->is_number() ? here->get<double>() : kNone;
 }
 
-/// Returns a figure of the first design, or of the one of a body ("arm.volume").
+/// Returns a number of the first design, or of the design of a named body ("arm.volume"); NaN if
+/// there is none.
 double design_value(const nlohmann::json& run, const std::string& name) {
   const size_t dot = name.find('.');
   const std::string body = dot == std::string::npos ? "" : name.substr(0, dot);

@@ -39,15 +39,16 @@ std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::st
 
 namespace {
 
-/// Jitter of further starts, at least.
+/// Smallest relative perturbation (`jitter`) of further starts.
 constexpr double kFurtherJitter = 0.1;
 
-/// Moves every component at random: places and lengths by up to `jitter` of the half-length, angles
-/// of a radian, half-thicknesses of themselves. The same seed gives the same start.
+/// Perturbs every component at random by up to `jitter` times a unit, which is the half-length for
+/// positions and lengths, one radian for angles, and the half-thickness itself for
+/// half-thicknesses. The result depends only on the components, `jitter` and `seed`.
 void shake(std::vector<Component>& components, double jitter, int seed) {
   if (jitter == 0) return;
   std::mt19937 engine(static_cast<unsigned>(seed));
-  // Not std::uniform_real_distribution, which differs between standard libraries.
+  // std::uniform_real_distribution is not used, because it differs between standard libraries.
   const auto draw = [&] {
     return jitter * (2 * (static_cast<double>(engine()) / 4294967295.0) - 1);
   };
@@ -60,8 +61,9 @@ void shake(std::vector<Component>& components, double jitter, int seed) {
   }
 }
 
-/// Cells at the pins of a link: those of their eyes, or those around the node of the pin. One pin
-/// counts as its support, the other one as its load.
+/// Returns the cells at the two pins of a link (a body of a mechanism between two pins): the cells
+/// of the eye around a bore, or without a bore the cells around the node of the pin. The first pin
+/// counts as a support and the second pin as a load.
 std::vector<HeldOrLoaded> pin_places(const Link& link, const Grid& g) {
   std::vector<HeldOrLoaded> out = {{"first pin", true, {}}, {"second pin", false, {}}};
   for (size_t k = 0; k < 2; ++k) {
@@ -91,7 +93,8 @@ mmc::ComplianceSettings settings_of(const Scene& scene, const BodyDesign& design
   return out;
 }
 
-/// Edges that hold a plate at rest; of a moving one its root line at the longest.
+/// Returns the supported edges of a static plate, or the root line of a moving plate at its
+/// greatest length; nothing for a link.
 std::vector<Segment> held_lines(const Scene& scene, const BodyDesign& design) {
   const Grid& grid = design.grid;
   if (design.link) return {};
@@ -102,10 +105,11 @@ std::vector<Segment> held_lines(const Scene& scene, const BodyDesign& design) {
   return out;
 }
 
-/// Fillings of corners and gaps that are narrower than this part of the smallest feature stay away.
+/// Fillings of corners and gaps that are narrower than this fraction of the minimum width are
+/// removed.
 constexpr double kThinnestFilling = 0.9;
 
-/// The bores in the eyes of a link, counterclockwise.
+/// Returns the bores in the eyes of a link as counterclockwise polygons [m].
 std::vector<std::vector<Vec2>> bores_of(const BodyDesign& design) {
   std::vector<std::vector<Vec2>> out;
   if (!design.link) return out;
@@ -116,7 +120,7 @@ std::vector<std::vector<Vec2>> bores_of(const BodyDesign& design) {
   return out;
 }
 
-/// The plate of a link without the bores in its eyes; empty where it has none.
+/// Returns the grid of a link as a region with the bores of its eyes as holes; empty without bores.
 Region with_bores(const BodyDesign& design) {
   const Grid& g = design.grid;
   Region out{corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}), bores_of(design)};
@@ -125,8 +129,9 @@ Region with_bores(const BodyDesign& design) {
   return out;
 }
 
-/// The design that an optimization starts from. A design that is only evaluated stays as its file
-/// says: a delivered one has parts that are shorter than those of a start.
+/// Returns the initial design of an optimization. A design that is only evaluated keeps the
+/// components of its file unchanged, because an optimized design has components that are shorter
+/// than the lower bound of a start.
 mmc::Design design_of(const Scene& scene, const Grid& grid, const std::vector<Component>& layout,
                       const mmc::DesignScale& scale, const mmc::Symmetry& symmetry) {
   if (scene.optimizer.max_iterations == 0)
@@ -156,7 +161,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
     std::vector<mmc::Design> further;
     for (int k = 1; k < d.starts; ++k) {
       std::vector<Component> moved = layout;
-      // Far from the seeds that a study would count through.
+      // The offset keeps these seeds apart from those of a study, which are consecutive.
       shake(moved, std::max(d.jitter, kFurtherJitter), d.seed + 1'000'003 * k);
       further.emplace_back(g, moved, scale, symmetry);
     }

@@ -12,79 +12,92 @@
 
 namespace flexmorph::cases {
 
-/// The scene of a case file, drives that follow from a trajectory included.
+/// Reads the scene of a case file, and computes the drives that follow from a trajectory.
 /// @throws Error (input) located in the file, see io::Table; Error (numerical) where the path of
-/// the
-///         trajectory cannot be reached.
+///         the trajectory cannot be reached.
 Scene read_scene(const io::CaseFile& file);
 
-/// A scene ready to be moved: what it lists is in here, nothing else.
+/// A scene that is ready for integration in time: its model and the settings of its motion.
 struct Mechanism {
-  fem::Workspace model;              ///< with the room of one motion
-  std::vector<fem::Growth> growths;  ///< one per plate that sits in a hub or sleeve
-  fem::MotionSettings motion;
-  std::string start_words;  ///< how it starts, where the case leaves that to the program
+  fem::Workspace model;  ///< Model with the work space of one motion.
+
+  /// Moving-root mesh control (when elements at the moving root are split or merged), one for each
+  /// plate that is held by a hub, a sleeve or a rigid body. A hub is a rigid frame with prescribed
+  /// motion that carries a body.
+  std::vector<fem::Growth> growths;
+  fem::MotionSettings motion;  ///< Settings of the motion.
+  std::string start_words;     ///< Text about the start if the program chooses it; otherwise empty.
 };
 
-/// Mesh of a run other than the scene's own (see Verify); limits of boundary elements scale along.
+/// A mesh of a run that can differ from that of the scene (see Verify). The lengths at which
+/// elements at the moving root are split or merged scale with the mesh.
 struct MeshChoice {
+  /// Numbers of elements along and across each body; absent for those of the scene.
   std::optional<std::array<int, 2>> elements;
-  int refine = 1;  ///< parts of every element in each direction
-  int cells = 0;   ///< designed bodies move on their design's cells, each in so many parts each way
-  int coarse = 1;  ///< or on cells that are so many of them each way
+  int refine = 1;  ///< Number of parts of every element in each direction.
+
+  /// Number of elements per design cell in each direction, for designed bodies that are meshed by
+  /// the cells of their designs; 0 for the mesh of the scene.
+  int cells = 0;
+  int coarse = 1;  ///< Number of design cells that are merged into one cell in each direction.
 
   auto operator<=>(const MeshChoice&) const = default;
 };
 
-/// The scene with its designed bodies on the cells of their designs, each in so many parts each
-/// way.
+/// Returns the scene with designed bodies that are meshed by the cells of their designs.
+/// @param parts  number of elements per cell in each direction
 Scene on_cells(Scene scene, int parts);
 
 /// Builds the model, the joints and the settings of the integrator of a scene. Stops for loads and
-/// output are left empty. The model of a [static] analysis has the same bodies, joints and loads.
-/// @param rigid  the rigid kinematic model of the scene, which is copied; null: it is built here
-/// @throws Error (input) for combinations the tables of elements, terms and joints do not have.
+/// output stay empty. The model of a [static] analysis contains all bodies, joints and loads, too.
+/// @param rigid  rigid kinematic model of the scene, which is copied; null: it is built here
+/// @throws Error (input) for combinations that the tables of elements, terms and joints do not
+///         have.
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh = {},
                           const fem::RigidKinematics* rigid = nullptr);
 
-/// Sets the time step of a motion and the times at which a step has to end. A motion with a step
-/// other than the scene's keeps that step: it does not adapt.
-/// @param step  [s]
+/// Sets the time step of a motion and the times of discontinuities at which a step must end. The
+/// step is constant if it differs from that of the scene, even where the scene has adaptive steps.
+/// @param step  time step [s]
 void set_step(const Scene& scene, double step, fem::MotionSettings& motion);
 
-/// Energy of strains of 1e-13, which slopes of size one have by round-off [J].
+/// Returns the energy of strains of 1e-13 in all bodies, which result from round-off of position
+/// gradients of order one [J].
 double stress_round_off(const Scene& scene);
 
-/// The hub that an edge is welded to.
+/// Returns the hub that an edge is welded to.
 const Hub& hub_of(const Scene& scene, const Joint& joint);
-/// The driven frame of a weld to a hub or of a sleeve at rest.
+/// Returns the prescribed motion of the frame of a weld to a hub, or of a static sleeve.
 fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint);
 
+/// Returns the thickness and the material of a body.
 fem::PlaneSection section_of(const Body& body);
 
-/// Point masses of one body, for its loads.
+/// Returns the point masses of one body, for its equivalent static loads.
 std::vector<fem::AttachedMass> attached_masses(const Scene& scene, const std::string& name);
 
-/// Joints of one body besides the one that carries it, for its loads.
+/// Returns the joints of one body except the one that carries it, for its equivalent static loads.
 std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::string& name);
 
-/// Applied forces on one body at a time, for its loads: those that do not turn.
+/// Returns the applied forces on one body at a time t [s], for its equivalent static loads. Loads
+/// that turn with the body are left out.
 std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name,
                                                double t);
 
-/// Scene -> design problems, with the initial layout.
+/// Returns the design problems of a scene with their initial layouts, one per designed body.
 std::vector<mmc::BodyProblem> build_problems(const Scene& scene);
 
 /// Finds the cells of every support and of every force of a static scene, with names for messages.
-/// @throws Error (input) for a place without a node of the domain.
+/// @param outside  1 for cells outside of the domain (n_cells); empty: none
+/// @throws Error (input) for a location without a node that can be material.
 std::vector<HeldOrLoaded> static_places(const Scene& scene, const Grid& grid,
                                         std::span<const signed char> outside);
-/// Supports and loads of a static scene on its design mesh.
-/// @throws Error (input) likewise.
+/// Creates the evaluator of the compliances of a static scene on its design mesh.
+/// @throws Error (input) for a location without a node that can be material.
 std::unique_ptr<mmc::ComplianceEvaluator> build_static_loads(const Scene& scene,
                                                              const mmc::BodyProblem& problem);
 
-/// Load times: multiples of esl.every up to the end [s].
+/// Returns the times of the equivalent static loads: multiples of esl.every up to the end [s].
 std::vector<double> load_times(const Scene& scene);
 
 }  // namespace flexmorph::cases

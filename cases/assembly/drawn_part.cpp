@@ -16,8 +16,9 @@ namespace {
 
 using Ring = std::vector<Vec2>;
 
-/// Parts of the domain's size: how near points are put onto borders, and those of sides that run
-/// along borders; how far an outline may reach beyond the domain, and how small it may be.
+/// Fractions of the domain's size: the distance within which points are moved onto borders, this
+/// distance for sides along borders, the permitted extension of an outline beyond the domain, and
+/// the smallest permitted size of an outline.
 constexpr double kRounding = 1e-9, kAlong = 1e-5, kBeyond = 2e-3, kSmallest = 0.05;
 
 Region domain_of(const Scene& scene, const BodyDesign& design) {
@@ -26,7 +27,7 @@ Region domain_of(const Scene& scene, const BodyDesign& design) {
   return {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}), {}};
 }
 
-/// The layers of a drawing that have outlines; none: all of them.
+/// Returns the layers of a drawing that can contain outlines.
 std::vector<std::string> outline_layers(const std::string& path) {
   std::vector<std::string> all = io::layers_of_dxf(path), out;
   const auto has = [&](const char* name) {
@@ -77,7 +78,8 @@ Box box_of(const std::vector<Ring>& rings) {
   return bounds_of(all);
 }
 
-/// Refuses outlines elsewhere than the domain or of another size: mostly those in another unit.
+/// Refuses outlines that extend beyond the domain or are far smaller than it, which usually have a
+/// wrong unit.
 void check_size(const std::vector<Ring>& rings, const Region& domain, const std::string& body) {
   const Box part = box_of(rings), box = bounds_of(domain.outer);
   const double size = (box.upper - box.lower).maxCoeff();
@@ -92,8 +94,8 @@ void check_size(const std::vector<Ring>& rings, const Region& domain, const std:
     throw Error::input(words + "; is its unit right?");
 }
 
-/// Puts points that are nearly on a border onto it: rounded ones, and sides that were drawn along
-/// the border.
+/// Moves points that nearly lie on a border onto the border: points that differ by rounding, and
+/// sides that were drawn along the border.
 class Snap {
  public:
   Snap(const Region& domain, const BodyDesign& design) {
@@ -107,7 +109,7 @@ class Snap {
         borders_.push_back({ring[k], ring[(k + 1) % ring.size()]});
   }
 
-  /// The ring on the borders, without points that came together.
+  /// Returns a ring with its points moved onto the borders, without points that then coincide.
   Ring operator()(const Ring& ring) const {
     const std::size_t n = ring.size();
     std::vector<bool> along(n, false);
@@ -139,7 +141,7 @@ class Snap {
       const Vec2 side = s.b - s.a;
       const double t = side.dot(p - s.a) / side.squaredNorm();
       Vec2 at = s.a + t * side;
-      // On sides along the axes exactly.
+      // Coordinates on sides that are parallel to an axis are exact.
       if (side.x() == 0) at.x() = s.a.x();
       if (side.y() == 0) at.y() = s.a.y();
       if (t > 0 && t < 1 && (at - p).norm() < least) {
@@ -163,14 +165,15 @@ bool are_apart(const Box& a, const Box& b) {
   return (a.upper.array() < b.lower.array()).any() || (b.upper.array() < a.lower.array()).any();
 }
 
-/// A ring of a drawing, and the rings that it lies in, by their numbers.
+/// A ring of a drawing with the indices of the rings that enclose it.
 struct Nested {
   Ring ring;
   Box box;
-  double size = 0;  ///< area [m²]
+  double size = 0;  ///< Area [m²].
   std::vector<std::size_t> within;
 };
 
+/// Returns the rings of a drawing with the rings that enclose each of them.
 /// @throws Error (input) for rings that cross themselves or each other
 std::vector<Nested> nested(const std::vector<Ring>& rings) {
   std::vector<Nested> out;
@@ -178,7 +181,7 @@ std::vector<Nested> nested(const std::vector<Ring>& rings) {
     const Region alone = region_of({ring});
     out.push_back({alone.outer, bounds_of(ring), area(alone), {}});
   }
-  constexpr double kTouches = 1e-6;  // of the smaller area
+  constexpr double kTouches = 1e-6;  // relative tolerance of areas, in the smaller area
   for (std::size_t i = 0; i < out.size(); ++i)
     for (std::size_t j = 0; j < out.size(); ++j) {
       const bool smaller = out[i].size < out[j].size || (out[i].size == out[j].size && i > j);
@@ -192,8 +195,9 @@ std::vector<Nested> nested(const std::vector<Ring>& rings) {
   return out;
 }
 
-/// Material is between outer rings, which lie in an even number of others, and their holes. A piece
-/// that the domain does not clip has its points in the order of the drawing: meshes depend on it.
+/// Returns the connected regions of material: outer rings, which are enclosed by an even number of
+/// rings, with their holes. A region that the domain does not clip keeps the order of its points in
+/// the drawing, because meshes depend on this order.
 std::vector<Region> pieces_of(const std::vector<Nested>& all, const Region& domain) {
   std::vector<Region> out;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -213,7 +217,7 @@ std::vector<Region> pieces_of(const std::vector<Nested>& all, const Region& doma
   return out;
 }
 
-/// The area that even-odd rings enclose.
+/// Returns the area that rings enclose by the even-odd rule [m²].
 double area_of(const std::vector<Nested>& all) {
   double out = 0;
   for (const Nested& n : all) out += n.within.size() % 2 == 0 ? n.size : -n.size;

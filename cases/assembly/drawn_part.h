@@ -7,17 +7,18 @@
 
 namespace flexmorph::cases {
 
-/// Outline of a part that is to stand in place of a design, from a drawing in the coordinates of
-/// the exported design [m]: pieces of material with their holes, clipped to the design domain.
-/// Sides that run along borders of the domain or of solid and void regions to 1e-5 of the domain's
-/// size, and points that are there but for rounding, are put onto them.
+/// Reads the outline of a part that replaces a design from a drawing in the coordinates of the
+/// exported design [m]: connected regions of material with their holes, clipped to the design
+/// domain. Sides that coincide with borders of the domain or of solid and void regions within 1e-5
+/// of the domain's size are moved onto these borders, and so are points that differ from them by
+/// rounding.
 ///
-/// DXF: the layers OUTLINE and HOLES where there is an OUTLINE; otherwise all layers but DOMAIN,
-/// SUPPORTS and LOADS, on which exported drawings show what is no outline. STEP: see
+/// DXF: the layers OUTLINE and HOLES if there is a layer OUTLINE; otherwise all layers except
+/// DOMAIN, SUPPORTS and LOADS, which contain no outlines in exported drawings. STEP: see
 /// io::read_step_outline().
-/// @param path  of a .dxf, .step or .stp file
-/// @throws Error (input) "<path>: ..." for a file that cannot be read or says no unit, rings that
-///         cross, and outlines that reach beyond the domain or are far smaller than it.
+/// @param path  path of a .dxf, .step or .stp file
+/// @throws Error (input) "<path>: ..." for a file that cannot be read or gives no unit, for rings
+///         that cross, and for outlines that extend beyond the domain or are far smaller than it.
 std::vector<Region> read_part(const std::string& path, const Scene& scene,
                               const BodyDesign& design);
 

@@ -4,8 +4,8 @@
 
 namespace flexmorph::cases {
 
-/// Makes the hot bodies of a model hot, with their thermal forces where they act, and lets steps
-/// land on the kinks of temperatures.
+/// Adds the temperatures of heated bodies to a mechanism, with thermal forces where they act, and
+/// makes steps end at discontinuities of prescribed temperatures.
 void add_heat(const Scene& scene, Mechanism& mechanism);
 
 }  // namespace flexmorph::cases

@@ -6,7 +6,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Angle of the first axis of an anchor at the start, as far as the case says [rad].
+/// Returns the angle of the first axis of an anchor at the start, from the angles of the case
+/// [rad].
 double start_angle(const Scene& scene, const Anchor& anchor) {
   for (const RigidBody& b : scene.rigid_bodies)
     if (b.name == anchor.body) return b.angle + anchor.angle;

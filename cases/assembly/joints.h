@@ -6,22 +6,27 @@
 
 namespace flexmorph::cases {
 
-/// Where an anchor is in the model at hand: in the flexible one plates have material points, in the
-/// rigid kinematic model they have places on a rigid body.
+/// A function that returns the location of an anchor in a model. In the flexible model it is a
+/// material point of a plate, in the rigid kinematic model a point of a rigid body.
 using FindPlace = std::function<fem::MarkerPlace(const Anchor&)>;
 
-/// The joint of the model; nothing where the model at hand does not need it, and of edges, which
-/// are not made one by one: see JointRow::make.
-/// @param rigid  is it the rigid kinematic model?
+/// Creates a joint of a model. The result is null where the model does not need the joint, and for
+/// joints that hold edges, which are created elsewhere (see JointRow::make).
+/// @param place  returns the location of an anchor in the model
+/// @param rigid  true for the rigid kinematic model
 std::unique_ptr<fem::Joint> make_joint(const Scene& scene, const Joint& joint,
                                        const FindPlace& place, bool rigid);
 
+/// Creates the force element of a spring.
+/// @param place  returns the location of an anchor in the model
 std::unique_ptr<fem::Link> make_link(const Scene& scene, const Spring& spring,
                                      const FindPlace& place);
 
-/// Position of an anchor at the start, as far as the case says [m]; of a joint's other anchor where
-/// it is not given itself.
+/// Returns the position of an anchor at the start, from the positions and angles of the case [m].
 Vec2 start_place(const Scene& scene, const Anchor& anchor);
+/// Returns an anchor with its point. A point that the case does not give is the position of the
+/// second anchor of the joint at the start.
+/// @param other  second anchor of the joint
 Anchor completed(const Scene& scene, const Anchor& anchor, const Anchor& other);
 
 }  // namespace flexmorph::cases

@@ -17,7 +17,7 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Angle and position as drives say, where they do.
+/// Returns the motion of a hub whose angle or position is prescribed by drives.
 fem::FrameDrive driven_hub(const Scene& scene, const Hub& hub) {
   const bool turns = !hub.turn.drive.empty(), travels = !hub.path[0].drive.empty();
   const auto turn = scene.motion_of(hub.turn);
@@ -55,7 +55,7 @@ fem::FrameDrive drive_of(const Scene& scene, const Hub& hub) {
       f.angle_rate = hub.angular_velocity;
       return f;
     };
-  // ω(t) = ω s(t/T), s = 10u³ - 15u⁴ + 6u⁵: rate and acceleration start and end smoothly.
+  // ω(t) = ω s(t/T), s = 10u³ - 15u⁴ + 6u⁵, so that the angular acceleration is zero at both ends.
   return [hub, still, T = time.spin_up](double t) {
     fem::FrameMotion f = still;
     const double w = hub.angular_velocity, u = std::min(1.0, t / T);
@@ -87,7 +87,8 @@ void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& co
   model.add_body(body.name, body.row->make(body, scene.time.end, count), section, std::move(terms));
 }
 
-/// The rate at the start of a line that is driven through the material; 0 where it is not.
+/// Returns the rate of the material coordinate at the start for a material line that a joint drives
+/// [m/s]; 0 if no joint drives it.
 double slide_of(const Scene& scene, const Joint& frame) {
   for (const Joint& j : scene.joints)
     if (j.drives_line && j.body == frame.body && j.line == frame.line)
@@ -95,7 +96,8 @@ double slide_of(const Scene& scene, const Joint& frame) {
   return 0;
 }
 
-/// An edge in a hub, in a sleeve or on a rigid body; the first one of a body carries it.
+/// Adds the joint of an edge that is held by a hub, a sleeve or a rigid body, and the mesh control
+/// of the moving root.
 void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& out) {
   const Body& body = scene.body(joint.body);
   fem::Carrier carrier;
@@ -126,7 +128,7 @@ void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& 
   out.growths.push_back(growth);
 }
 
-/// All held edges of a body in one joint, so that a corner of two of them is held once.
+/// Adds one joint for all held edges of a body, so that a corner of two held edges is held once.
 void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
   std::vector<fem::Held> all;
   for (const Joint& joint : scene.joints) {
@@ -139,7 +141,8 @@ void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
   if (!all.empty()) model.add_joint(fem::make_hold(body.name + ".held", body.name, std::move(all)));
 }
 
-/// Without rigid bodies: where beams are, as the case says or with their hubs.
+/// Sets the placement of bodies without material lines (beams) in a scene that is no mechanism:
+/// they move with their hubs or stay where the case places them.
 void place_alone(const Scene& scene, fem::MotionSettings& motion) {
   struct Frame {
     std::string body;
@@ -186,8 +189,9 @@ fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
 
 namespace {
 
-/// Does no load act that has no energy, and nothing that could bring energy in within a step and be
-/// at rest at both of its ends, as a step of temperature? What moves for longer shows as power.
+/// Returns true if no load acts that has no energy, and no heat and no drive exists. Heat and
+/// drives can supply energy within one step and be constant at both ends of the step, so that no
+/// power of them is visible there.
 bool keeps_energy(const Scene& scene) {
   const auto follows = [](const BodyLoad& l) { return l.row->follows || l.turns; };
   return !scene.has_heat() && scene.drives.empty() &&
@@ -205,8 +209,9 @@ double stress_round_off(const Scene& scene) {
 
 namespace {
 
-/// The scene with its designed bodies on the cells of their designs.
-/// @param coarse  cells of the motion that many cells of the design each way
+/// Returns the scene with designed bodies that are meshed by the cells of their designs.
+/// @param parts   number of elements per cell in each direction
+/// @param coarse  number of design cells that are merged into one cell in each direction
 Scene on_merged_cells(Scene scene, int parts, int coarse) {
   for (const BodyDesign& design : scene.designs)
     for (Body& body : scene.bodies) {
@@ -226,7 +231,7 @@ Scene on_cells(Scene scene, int parts) { return on_merged_cells(std::move(scene)
 namespace {
 
 /// Adds the joints of a scene.
-/// @param finer  length of the elements of this run, in those of the scene
+/// @param finer  returns the length of the elements of this run relative to those of the scene
 void add_joints(const Scene& scene, const std::function<double(const Body&)>& finer,
                 const FindPlace& place, Mechanism& out) {
   for (const Joint& joint : scene.joints) {

@@ -10,33 +10,37 @@
 
 namespace flexmorph::cases {
 
-/// A case with everything that is expensive to build from it or must agree between its users: one
-/// mechanism per mesh, the rigid kinematic model, the design problems, the resource estimate. Each
-/// of them is built at its first use and at most once; users get const references and copy what
-/// they change. Several threads may ask at the same time.
+/// A case with all objects that are expensive to build or must be consistent between their users:
+/// one mechanism per mesh, the rigid kinematic model, the design problems, the resource estimate.
+/// Each object is built once, at its first use. Users get const references and copy an object
+/// before they change it. Several threads may use the case at the same time.
 class PreparedCase {
  public:
-  /// Builds nothing yet.
+  /// Creates a prepared case of a scene; nothing else is built yet.
   explicit PreparedCase(Scene scene);
 
+  /// Returns the scene of the case.
   const Scene& scene() const { return parts_->scene; }
-  /// The mechanism of a scene that moves or of a [static] analysis, with full material and the
+  /// Returns the mechanism of a moving scene or of a [static] analysis, with full material and the
   /// settings of its motion. A motion integrates a copy of it.
   /// @throws Error as build_mechanism()
   const Mechanism& mechanism(const MeshChoice& mesh = {}) const;
-  /// The rigid kinematic model; null where the scene is no mechanism.
+  /// Returns the rigid kinematic model; null where the scene is no mechanism.
   /// @throws Error as rigid_kinematics()
   const fem::RigidKinematics* rigid() const;
-  /// The design problems with their initial layouts, one per designed body. A run designs copies.
+  /// Returns the design problems with their initial layouts, one per designed body. A run optimizes
+  /// copies of them.
   /// @throws Error as build_problems()
   const std::vector<mmc::BodyProblem>& design_problems() const;
-  /// What a run takes of time, memory and disk.
+  /// Returns the estimated size of a run: steps, memory and disk space.
   const Extent& extent() const;
 
-  /// How often something was built.
+  /// Numbers of objects that have been built.
   struct Counts {
+    /// Numbers of mechanisms, of rigid kinematic models and of lists of design problems.
     int mechanisms = 0, rigid = 0, design_problems = 0;
   };
+  /// Returns the numbers of objects that have been built so far.
   Counts counts() const;
 
  private:

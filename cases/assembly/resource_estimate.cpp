@@ -19,21 +19,22 @@ namespace {
 constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr double kNumber = 8;
 
-// Measured, see extent_of(): the program with its libraries and a report; a number of a table; of a
-// frame for ParaView its head, its points in the plane and in space, cells and components of
-// designs; of pictures in space.
+// Measured sizes in bytes, see extent_of(): the program with its libraries, a report, a number in a
+// table; in a frame for ParaView the header, a point in the plane and a point in space; a cell and
+// a component in a frame of a design, a cell in its exports; a point in a picture of a body in
+// space.
 constexpr double kProgram = 36e6, kReport = 5e5, kCsvNumber = 17;
 constexpr double kFrame = 1600, kPlanePoint = 19, kSpacePoint = 34;
 constexpr double kDesignCell = 25, kDesignComponent = 900, kDesignExports = 250,
                  kPicturePoint = 190;
-// A tangent: its entries with their places, in the copies that assembly and solvers keep.
+// An entry of a tangent with its indices, in all copies that assembly and solvers keep.
 constexpr double kEntry = 40;
-// Of a cell of a design: factors, topology description function and derivatives.
+// A cell of a design: scale factors, topology description function and derivatives.
 constexpr double kCell = 1500;
-// Of bodies on cells: unsymmetric factors, and meshes that grow line by line, leave that many times
-// what one tangent takes.
+// Number of tangents whose memory a body meshed by cells needs, because its factorizations are
+// unsymmetric and its mesh grows line by line.
 constexpr double kCellCopies = 6;
-// Loads of a design are kept as forces, displacements and what solving them takes.
+// Number of copies of the load vectors of a design: forces, displacements and solver work space.
 constexpr double kLoadCopies = 9;
 
 double sum_of(const std::vector<Share>& shares) {
@@ -42,7 +43,8 @@ double sum_of(const std::vector<Share>& shares) {
   return sum;
 }
 
-/// Elements along and across in a motion, `finer` times the case's: flowing bodies grow.
+/// Returns the numbers of elements along and across a body in a motion, multiplied by `finer`. They
+/// include elements that are inserted while material flows in.
 std::array<double, 2> elements_of(const Scene& scene, const Body& body, double finer) {
   double along = body.elements[0];
   if (body.flow && !body.is_even()) {
@@ -53,32 +55,32 @@ std::array<double, 2> elements_of(const Scene& scene, const Body& body, double f
   return {finer * along, body.row->across ? finer * body.elements[1] : 0};
 }
 
-/// Unknowns at a node of a body: its position and slopes.
+/// Returns the number of unknowns at a node of a body: position and slopes.
 double node_unknowns(const Body& body) {
   const double vectors = !body.row->across ? 2 : body.on_cells() ? 1 : body.shape == "h12" ? 3 : 4;
   return vectors * body.dim();
 }
 
-/// Tangent, factor and element matrices of one body that moves.
+/// Returns the memory of tangent, factorization and element matrices of one moving body [bytes].
 double moving_bytes(const Scene& scene, const Body& body, double finer) {
   const std::array<double, 2> n = elements_of(scene, body, finer);
   const double each = node_unknowns(body), rows = (n[0] + 1) * (n[1] + 1) * each;
   const double corners = body.row->across ? 4 : 2, neighbours = body.row->across ? 9 : 3;
-  // Orderings of planar meshes fill by about the logarithm of their width.
+  // The fill-in of planar meshes is about proportional to the logarithm of their width.
   const double narrow = std::min(n[0], n[1]) + 1;
   const double fill = neighbours * each * (1 + std::log2(1 + narrow));
   const double elements = n[0] * std::max(1.0, n[1]), size = corners * each;
   return rows * (neighbours * each * kEntry + kNumber * fill) + elements * kNumber * size * size;
 }
 
-/// Two full matrices of its vectors, see fem::thermal_matrices().
+/// Returns the memory of two dense matrices of a body, see fem::thermal_matrices() [bytes].
 double thermal_bytes(const Scene& scene, const Body& body) {
   const std::array<double, 2> n = elements_of(scene, body, 1);
   const double vectors = (n[0] + 1) * (n[1] + 1) * node_unknowns(body) / body.dim();
   return 2 * kNumber * vectors * vectors;
 }
 
-/// The finest mesh that any motion of the scene has, times that of its bodies.
+/// Returns the refinement factor of the finest mesh in any motion of the scene.
 double finest(const Scene& scene) {
   if (!scene.verify) return 1;
   if (!scene.verify->mesh) return scene.verify->refine;
@@ -98,13 +100,13 @@ double columns_of(const Scene& scene) {
   return out;
 }
 
-/// Points that a body without a design is drawn with.
+/// Returns the number of points in pictures and frames of a body without a design.
 double drawn_points(const Scene& scene, const Body& body) {
   const std::array<double, 2> n = elements_of(scene, body, 1);
   return (n[0] * body.row->drawn[0] + 1) * (std::max(1.0, n[1]) * body.row->drawn[1] + 1);
 }
 
-/// Files for ParaView of one moment.
+/// Returns the size of the ParaView files of one snapshot [bytes].
 double frame_bytes(const Scene& scene) {
   double out = 0;
   for (const Body& body : scene.bodies) {
@@ -129,7 +131,7 @@ void add_course(const Scene& scene, Extent& out) {
   const double longest = time.largest_step > 0 ? time.largest_step : time.end / 50;
   out.steps = std::ceil(time.end / (adaptive ? longest : time.step) - 1e-9);
   out.step_key = adaptive ? "time.largest_step" : "time.step";
-  // Steps end where a frame is written.
+  // A step must end at the time of every frame, which can increase the number of steps.
   const bool frames = scene.output.vtk && scene.output.motion_every > 0;
   if (const double n = frames ? time.end / scene.output.motion_every : 0; n > out.steps) {
     out.steps = std::floor(n);
@@ -178,7 +180,7 @@ void add_design(const Scene& scene, const BodyDesign& d, Extent& out) {
                            (scene.file && scene.file->gives(path + ".cells") ? ".cells" : ".cell");
   const double cells = 1.0 * g.nx * g.ny, n = 2.0 * (g.nx + 1) * (g.ny + 1);
   const std::string name = "the design of '" + d.body + "'";
-  // Of bodies that move a band in natural order; at rest nested dissection.
+  // The factorization is banded for moving bodies, and uses nested dissection for static plates.
   const double narrow = std::min(g.nx, g.ny);
   const double factor = scene.domain ? n * 24 * std::log2(1 + narrow) : n * (2.0 * g.ny + 5);
   out.memory.push_back({name, cell, kNumber * factor + kCell * cells});
@@ -194,8 +196,8 @@ void add_design(const Scene& scene, const BodyDesign& d, Extent& out) {
                       frames * (kDesignCell * cells + kDesignComponent * components)});
 }
 
-/// Bytes that are mapped and not used, of libraries and of reserve_blas(): they count where
-/// the address space is limited.
+/// Returns the memory that libraries and reserve_blas() have mapped but do not use [bytes]. It
+/// counts if the address space is limited.
 double unused_mapped() {
   std::ifstream status("/proc/self/statm");
   double mapped = 0, used = 0;
@@ -203,17 +205,19 @@ double unused_mapped() {
   return (mapped - used) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// What the program may take less than the machine has: limits of the process and of its group.
+/// Returns the memory limit of the process and of its control group [bytes]; infinite without
+/// limits.
 double allowed_memory() {
   double out = kAny;
   if (rlimit limit{}; getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
     out = std::max(0.0, static_cast<double>(limit.rlim_cur) - unused_mapped());
   std::ifstream group("/sys/fs/cgroup/memory.max");
-  if (double most = 0; group >> most) out = std::min(out, most);  // "max": none
+  if (double most = 0; group >> most) out = std::min(out, most);  // not a number: no limit
   return out;
 }
 
-/// @throws Error (input) at the key of the largest share when they take more than there is.
+/// Refuses items whose total exceeds the available amount.
+/// @throws Error (input) at the key of the largest item.
 void refuse_more(const Scene& scene, const std::vector<Share>& shares, double there,
                  const std::string& what, const std::string& where) {
   const double bytes = sum_of(shares);

@@ -7,50 +7,58 @@
 
 namespace flexmorph::cases {
 
-/// What one part of a run takes, and the key whose number is to blame for it.
+/// An item of the resource estimate: the memory or disk space of one component of a run.
 struct Share {
-  std::string what;  ///< "steps", "the design of 'plate'"
-  std::string key;   ///< see Scene::refuse()
-  double bytes = 0;
+  std::string what;  ///< Name for messages, such as "the design of 'plate'".
+  std::string key;   ///< Key of the case that determines the size, see Scene::refuse().
+  double bytes = 0;  ///< Size [bytes].
 };
 
-/// The size of a run, from the scene alone, before anything is built. All counts are doubles: exact
-/// up to 2^53, and nothing a case may say overflows them.
+/// The size of a run, estimated from its scene before anything is built. All counts are doubles,
+/// because they are exact up to 2^53 and no case can make them overflow.
 struct Extent {
-  double steps = 0;       ///< of a motion (adaptive: at the least), or of a path
-  std::string step_key;   ///< the key that says how many
-  double frames = 0;      ///< of the motion, for ParaView
-  double motions = 1;     ///< that are kept: of designs with uniform material and finer meshes
-  double iterations = 0;  ///< of designs, at most
-  std::vector<Share> memory, disk;
+  double steps = 0;      ///< Number of steps of a motion (adaptive: lower bound) or of a path.
+  std::string step_key;  ///< Key of the case that determines the number of steps.
+  double frames = 0;     ///< Number of frames of the motion for ParaView.
 
+  /// Number of motions that a run keeps: with designs also those of uniform material and of finer
+  /// meshes.
+  double motions = 1;
+  double iterations = 0;            ///< Upper bound of the number of iterations of all designs.
+  std::vector<Share> memory, disk;  ///< Items of memory and of disk space.
+
+  /// Returns the total memory [bytes].
   double memory_bytes() const;
+  /// Returns the total disk space [bytes].
   double disk_bytes() const;
 };
 
-/// Memory and disk are within a factor of two of what was measured of shipped cases and of such on
-/// finer meshes (tests/cases/scene/resource_estimate_test.cpp). Of designs the files are those of
-/// all iterations that are allowed, of paths along their arc those of all equilibria.
+/// Returns the estimated size of a run. Memory and disk space are within a factor of two of the
+/// measured ones for the shipped cases, also on finer meshes
+/// (tests/cases/scene/resource_estimate_test.cpp). Files of designs are counted for all permitted
+/// iterations, files of arc-length paths for all permitted equilibria.
 Extent extent_of(const Scene& scene);
 
-/// Bytes that a run may take; infinite where the system does not say.
+/// Memory and disk space that a run may use; infinite where the system gives no limit.
 struct Machine {
-  double memory = 0;  ///< of the machine, or less where its administrator allows less
-  double disk = 0;    ///< free, where the run folder will be
+  double memory = 0;  ///< Memory of the machine, or the limit of the process if smaller [bytes].
+  double disk = 0;    ///< Free disk space at the run folder [bytes].
 };
+/// Returns the limits of this machine for a run in a folder.
 /// @param directory  a folder that may not exist yet; empty: the working directory
 Machine this_machine(const std::string& directory = "");
 
-/// @throws Error (input) at the key to blame when a run has more steps than can be counted, or
-///         takes more memory or disk than there is.
+/// Checks that a run fits the limits of a machine.
+/// @throws Error (input) at the key that determines the size when a run has more steps than can be
+///         counted, or needs more memory or disk space than available.
 void require_room(const Scene& scene, const Machine& machine);
 
-/// What is said when memory runs out all the same: the estimate, and what there is.
+/// Returns the message for a run that exhausts the memory: the estimate and the available memory.
 std::string out_of_memory_words(const Extent& extent);
 
-/// "1.2 GB".
+/// Returns a number of bytes as text, such as "1.2 GB".
 std::string bytes_text(double bytes);
-/// "40 s", "12 min", "3.1 h", "8 days".
+/// Returns a duration in seconds as text: "40 s", "12 min", "3.1 h", "8 days".
 std::string duration_text(double seconds);
 
 }  // namespace flexmorph::cases

@@ -14,13 +14,14 @@ namespace {
 
 double curvature_of(const Body& body) { return body.arc == 0 ? 0 : body.arc / body.length; }
 
-/// Returns the material coordinate at which a body begins at the start: what is in front of it has
-/// not left the hub [m].
+/// Returns the material coordinate of the root at the start [m]. Material with a smaller coordinate
+/// is still inside the hub.
 double root_line(const Scene& scene, const Body& body) {
   return body.longest(scene.time.end) - body.length;
 }
 
-/// Returns where a hub, a rigid body or the case itself puts a body; nothing where welds do.
+/// Returns the pose of a body if a hub, a rigid body or the case gives it; nothing if welds give
+/// it.
 std::optional<fem::ReferencePose> own_pose(const Scene& scene, const Body& body) {
   const double root = root_line(scene, body), curvature = curvature_of(body);
   for (const Joint& joint : scene.joints) {
@@ -58,7 +59,8 @@ Vec2 undeformed_place(const Body& body, const Vec2& material) {
 
 namespace {
 
-/// Returns a rigid body with its point masses, about the common centre of mass.
+/// Returns the mass, the centre of mass and the moment of inertia about it of a rigid body, point
+/// masses included.
 fem::RigidSection section_of(const RigidBody& body) {
   if (body.masses.empty()) return {body.mass, body.center, body.inertia};
   fem::RigidSection out{body.mass, body.mass * body.center, body.inertia};
@@ -99,7 +101,7 @@ std::vector<std::unique_ptr<fem::Link>> rigid_loads(const Scene& scene) {
 
 namespace {
 
-/// Collects the rigid mechanism of a scene.
+/// Builds the rigid mechanism of a scene.
 class MechanismOfScene {
  public:
   explicit MechanismOfScene(const Scene& scene) : scene_(scene) {
@@ -125,7 +127,8 @@ class MechanismOfScene {
  private:
   double longest(const Body& body) const { return body.longest(scene_.time.end); }
 
-  /// Returns the end of the straight axis at the start, also of an arc.
+  /// Returns the position of the free end at the start; for an arc that of the end of its straight
+  /// material axis.
   Vec2 origin_of(const Body& body, const fem::ReferencePose& pose) const {
     for (const Joint& j : scene_.joints)
       if (j.body == body.name && j.edge == "free_end" && body.flow)
@@ -137,7 +140,7 @@ class MechanismOfScene {
     RigidBody plate;
     plate.name = body.name;
     const double length =
-        body.length > 0 ? body.length : body.width;  // not known yet: of no matter
+        body.length > 0 ? body.length : body.width;  // a length not known yet has no influence
     plate.mass = body.density * body.thickness * body.width * length;
     plate.center = {-0.5 * length, 0};
     plate.inertia = plate.mass * (length * length + body.width * body.width) / 12;
@@ -158,7 +161,7 @@ class MechanismOfScene {
     return out;
   }
 
-  /// Returns where an anchor is in the axes of its rigid body.
+  /// Returns the location of an anchor in the axes of its rigid body.
   fem::MarkerPlace place_of(const Anchor& anchor) const {
     Vec2 point = anchor.point;
     for (const Body& b : scene_.bodies)
@@ -184,7 +187,7 @@ class MechanismOfScene {
     if (out.joint || !is_known) out_.joints.push_back(std::move(out));
   }
 
-  /// Returns the held line as a place of its rigid body.
+  /// Returns the location of the held line in the axes of its rigid body.
   fem::MarkerPlace line_of(const Joint& joint, const Body& body) const {
     fem::MarkerPlace out{joint.body, {0, 0}, 0, {}};
     if (joint.edge == "root" && body.flow) return out;
@@ -199,7 +202,7 @@ class MechanismOfScene {
     return out;
   }
 
-  /// Says whether material slides through a held line by itself.
+  /// Returns true if the held line is a free line, whose material coordinate is an unknown.
   bool slides(const Joint& joint, const Body& body) const {
     if (joint.edge == "free_end" || flows(joint, body)) return false;
     return std::any_of(body.lines.begin(), body.lines.end(),
@@ -212,7 +215,7 @@ class MechanismOfScene {
     return flow.motion || !scene_.follows_trajectory(flow.length);
   }
 
-  /// Returns the root line of a body whose material flows through it: shifted along the axis.
+  /// Returns the root line of a body with material flow, which moves along the axis of the body.
   static fem::MarkerPlace fed(fem::MarkerPlace line, const Body& body) {
     line.along = [body](double t) {
       const fem::Motion m = body.length_motion(t);
@@ -231,7 +234,7 @@ class MechanismOfScene {
     } else if (!flows(joint, body)) {
       out.joint = fem::make_rigid_weld(joint.name, out.b, out.a);
     } else {
-      out.is_driven = true;  // by a constant speed, too
+      out.is_driven = true;  // also when the speed is constant
       out.drive = body.flow->length.drive;
       out.coordinate = fem::distance_along;
       out.released = fem::make_slider(joint.name, out.a, out.b);
@@ -241,7 +244,7 @@ class MechanismOfScene {
     out_.joints.push_back(std::move(out));
   }
 
-  /// Adds a driven frame: hubs keep their drives, whatever is released.
+  /// Adds a frame with prescribed motion. It has no released joint, so that hubs keep their drives.
   void add_in_hub(const Joint& joint) {
     const Body& body = scene_.body(joint.body);
     if (slides(joint, body) || (flows(joint, body) && !is_known(*body.flow)))

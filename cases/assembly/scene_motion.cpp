@@ -8,14 +8,14 @@
 namespace flexmorph::cases {
 namespace {
 
-/// A grid whose cells are n x n of another one.
+/// Returns a grid whose cells consist of n x n cells of the given grid.
 Grid merged(Grid grid, int n) {
   grid.nx /= n;
   grid.ny /= n;
   return grid;
 }
 
-/// Means over n x n cells.
+/// Returns the means of cell values over n x n cells.
 VectorXd means(const Grid& fine, int n, const VectorXd& all) {
   if (n == 1) return all;
   const Grid coarse = merged(fine, n);
@@ -26,7 +26,7 @@ VectorXd means(const Grid& fine, int n, const VectorXd& all) {
   return out;
 }
 
-/// Transposed.
+/// Returns the product of the transpose of means() with values of the coarse cells.
 VectorXd spread(const Grid& fine, int n, const VectorXd& all) {
   if (n == 1) return all;
   const Grid coarse = merged(fine, n);
@@ -83,7 +83,7 @@ fem::MotionObjective SceneMotion::objective_of(const mmc::MotionRow& row,
   }
   const Body& body = scene_.body(scene_.designs[row.body].body);
   if (name == "joint_force") {
-    const auto carries = [&](const Joint& j) {  // of a link, the one at its first pin
+    const auto carries = [&](const Joint& j) {  // a link is carried by the joint at its first pin
       return j.carries(body.name) || (scene_.designs[row.body].link && j.point_on(body.name));
     };
     const auto joint = std::find_if(scene_.joints.begin(), scene_.joints.end(), carries);
@@ -98,7 +98,7 @@ fem::MotionObjective SceneMotion::objective_of(const mmc::MotionRow& row,
 
 std::vector<mmc::MotionResponse::Value> SceneMotion::evaluate(
     std::span<const mmc::MotionRow> rows, std::span<const mmc::CellFactors> factors) {
-  // Void as a smooth offset: it has derivatives.
+  // The scale factors of void are a smooth offset, so that derivatives exist.
   std::vector<mmc::CellFactors> of_motion(factors.begin(), factors.end());
   for (size_t d = 0; d < factors.size(); ++d) {
     const BodyDesign& design = scene_.designs[d];

@@ -6,16 +6,20 @@
 
 namespace flexmorph::cases {
 
-/// The motion of a scene on the cells of its designs, or on coarser ones, with its exact gradient.
+/// The motion of a scene on the cells of its designs, or on coarser cells, with exact gradients of
+/// its responses.
 class SceneMotion final : public mmc::MotionResponse {
  public:
+  /// Settings of the motion and of its adjoint computation.
   struct Settings {
-    double cell = 0;  ///< of the motion [m]; 0: those of the designs
-    double step = 0;  ///< [s]
-    int checkpoints = 0;
+    double cell = 0;      ///< Size of the cells of the motion [m]; 0: that of the design cells.
+    double step = 0;      ///< Time step [s]; 0: that of the scene.
+    int checkpoints = 0;  ///< Number of checkpoints of the adjoint computation.
   };
-  /// @param prepared  lives longer
-  /// @param go_on  asked at every step; false ends a motion with StoppedMotion
+  /// Creates the motion of a prepared case.
+  /// @param prepared  must live longer
+  /// @param go_on  cancellation callback; evaluate() calls it before the motion and throws
+  ///               StoppedMotion when it returns false
   SceneMotion(const PreparedCase& prepared, const Settings& settings, std::function<bool()> go_on);
 
   std::vector<Value> evaluate(std::span<const mmc::MotionRow> rows,
@@ -24,7 +28,7 @@ class SceneMotion final : public mmc::MotionResponse {
                             std::span<const VectorXd> fractions) override;
   int motions() const override { return motions_; }
 
-  /// What the last evaluate() spent.
+  /// Returns the result of the last evaluate() with its computing times.
   const fem::MotionGradients& last() const { return last_; }
 
  private:
@@ -40,7 +44,7 @@ class SceneMotion final : public mmc::MotionResponse {
   fem::MotionGradients last_;
 };
 
-/// The user wants no more, in the midst of a motion.
+/// Exception that ends an evaluation when the cancellation callback returns false.
 struct StoppedMotion {};
 
 }  // namespace flexmorph::cases

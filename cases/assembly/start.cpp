@@ -7,13 +7,13 @@ namespace {
 
 constexpr double kStill = 1e-6;  // [m/s]
 
-/// What the prestretched start looks ahead by, at most (fem::start_state()) [s].
+/// Largest time after the start at which fem::start_state() uses the rigid motion [s].
 constexpr double kAhead = 2e-4;
 
-/// How a mechanism starts that is to start steady: in equilibrium under the inertia forces of the
-/// motion that drives determine (rigid where only plates that bend can follow them), or at rest in
-/// equilibrium where nothing moves.
-/// @throws Error (input) where it moves and drives do not determine how.
+/// Returns the start of a mechanism with start = "steady": in equilibrium under the inertia forces
+/// of the motion that drives determine (rigid if plates must bend to follow the drives), or in
+/// equilibrium at rest if nothing moves.
+/// @throws Error (input) where the mechanism moves and drives do not determine its motion.
 fem::Start steady_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (rigid.degrees_of_freedom() == 0)
     return scene.bodies.empty() || !rigid.reaches(kAhead) ? fem::Start::rigid : fem::Start::steady;
@@ -29,9 +29,9 @@ fem::Start steady_start(const Scene& scene, fem::RigidMotion& rigid) {
                          io::to_text(rigid.start_speed(), 3) + " m/s: start = \"rigid\"");
 }
 
-/// How a mechanism starts prestretched: at rest near equilibrium where its drives do not determine
-/// it all.
-/// @throws Error (input) where it does not rest.
+/// Returns the start of a mechanism with start = "prestretched". It is at rest near equilibrium if
+/// drives do not determine the motion.
+/// @throws Error (input) where drives do not determine the motion and the mechanism is not at rest.
 fem::Start prestretched_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (rigid.degrees_of_freedom() == 0)
     return rigid.reaches(kAhead) ? fem::Start::prestretched : fem::Start::rigid;
@@ -39,7 +39,8 @@ fem::Start prestretched_start(const Scene& scene, fem::RigidMotion& rigid) {
     throw Error::input(
         "time.start: \"prestretched\" needs a motion of the rigid mechanism, but its joints hold "
         "more than it has freedoms: start = \"rigid\"");
-  // What is left of it is the start of a swing; the equilibrium of the plates ends it.
+  // A larger acceleration is the start of a swing. A smaller one vanishes in the equilibrium of the
+  // plates.
   const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
   const double speed = rigid.start_speed(), acceleration = rigid.start_acceleration();
   if (speed < kStill && acceleration < nearly) return fem::Start::settled;
@@ -52,13 +53,13 @@ fem::Start prestretched_start(const Scene& scene, fem::RigidMotion& rigid) {
                    "= \"rigid\"");
 }
 
-/// A start and why it was chosen.
+/// A start and the text with the reason for its choice.
 struct Choice {
   fem::Start kind;
   std::string words;
 };
 
-/// The start of a mechanism that the case leaves to the program.
+/// Returns the start of a mechanism if the program chooses it.
 Choice automatic_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (scene.bodies.empty()) return {fem::Start::rigid, ""};
   const bool still = rigid.start_speed() < kStill;
@@ -81,7 +82,7 @@ Choice automatic_start(const Scene& scene, fem::RigidMotion& rigid) {
           "\"rigid\": drives leave freedoms to the mechanism, and it sets off at the start"};
 }
 
-/// The same of bodies in hubs.
+/// Returns the start of bodies in hubs if the program chooses it.
 Choice automatic_start(const Scene& scene, Mechanism& mechanism) {
   if (scene.in_space())
     return {fem::Start::prestretched, "\"prestretched\": there is no other in space"};

@@ -5,10 +5,10 @@
 
 namespace flexmorph::cases {
 
-/// Sets how the motion of a mechanism starts (fem/README.md, Starts), and the words that say so
-/// where the case leaves it to the program.
-/// @param rigid      motion of the rigid mechanism; null where the scene is none
-/// @param mechanism  receives `motion.start` and `start_words`; all else is set
+/// Sets the start of the motion of a mechanism (fem/README.md, Starts), and a text about it if the
+/// program chooses the start.
+/// @param rigid      motion of the rigid mechanism; null where the scene is no mechanism
+/// @param mechanism  receives `motion.start` and `start_words`; all other members are set already
 /// @throws Error (input) where the scene cannot start as the case asks.
 void set_start(const Scene& scene, fem::RigidMotion* rigid, Mechanism& mechanism);
 

@@ -11,15 +11,16 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Nodes at a place, each with its share of a force spread evenly over the place.
+/// Nodes at a location, each with its fraction of a force that is uniformly distributed over the
+/// location.
 struct PlaceNodes {
   std::vector<int> nodes;
-  std::vector<double> shares;  // sum 1
-  std::vector<int> cells;      // that can be material and touch these nodes
+  std::vector<double> shares;  // fractions with the sum 1
+  std::vector<int> cells;      // cells that can be material and touch these nodes
 };
 
-/// Angle that each point of a rim stands for: half of the gaps to its neighbours, none wider than
-/// given.
+/// Returns the angle of the rim that belongs to each point: half of the angles to both neighbours,
+/// of which none counts more than `widest` [rad].
 std::vector<double> sectors(const std::vector<Vec2>& rim, const Vec2& center, double widest) {
   std::vector<std::pair<double, size_t>> angles;
   for (size_t k = 0; k < rim.size(); ++k)
@@ -37,8 +38,8 @@ std::vector<double> sectors(const std::vector<Vec2>& rim, const Vec2& center, do
   return out;
 }
 
-/// Finds the nodes of places. Only nodes that touch a cell that can be material count: cells
-/// outside of the domain and those of void regions cannot.
+/// Finds the nodes of supported and loaded locations. A node counts only if it touches a cell that
+/// can be material; cells outside of the domain and cells of void regions cannot.
 class NodeFinder {
  public:
   NodeFinder(const Scene& scene, const Grid& grid, std::span<const signed char> outside)
@@ -50,8 +51,9 @@ class NodeFinder {
           outside_[static_cast<size_t>(cell)] = 1;
   }
 
-  /// @param path  of the table with the place in the case, for messages
-  /// @throws Error (input) when no node is there that can be material.
+  /// Returns the nodes of a location.
+  /// @param path  path of the table with the location in the case, for messages
+  /// @throws Error (input) when no node of the location can be material.
   PlaceNodes at(const Place& place, const std::string& path) const {
     const double small = 1e-6 * grid_.dx();
     Box box = place.box;
@@ -69,15 +71,15 @@ class NodeFinder {
         const int cells = touch(i, j, out.cells);
         if (cells == 0) continue;
         out.nodes.push_back(grid_.node(i, j));
-        // Along an edge a node carries the traction of the half cells beside it.
+        // On an edge a node carries the traction of half of each adjacent cell.
         out.shares.push_back(place.kind == Place::Kind::edge ? cells : 1.0);
       }
     return whole(std::move(out), path + "." + key_of(place.kind));
   }
 
  private:
-  /// Nodes between cells in the bore and cells that can be material, each with the part of the rim
-  /// that is around it.
+  /// Returns the nodes between cells in the bore and cells that can be material, each with its
+  /// fraction of the rim.
   PlaceNodes at_rim(const std::vector<Vec2>& bore, const std::string& path) const {
     std::vector<signed char> in_bore(static_cast<size_t>(grid_.n_cells()), 0);
     for (const int cell : cells_within(grid_, {bore, {}})) in_bore[static_cast<size_t>(cell)] = 1;
@@ -96,7 +98,8 @@ class NodeFinder {
     out.shares = sectors(rim, disc.center, 4 * grid_.dx() / disc.radius);
     return whole(std::move(out), path + ".disc");
   }
-  /// Shares in all 1. @throws Error (input) without a node
+  /// Scales the fractions of the nodes to the sum 1.
+  /// @throws Error (input) if there is no node
   PlaceNodes whole(PlaceNodes out, const std::string& key) const {
     if (out.nodes.empty())
       scene_.refuse(key,
@@ -134,7 +137,8 @@ class NodeFinder {
     }
     return "box";
   }
-  /// Adds the cells around a node that can be material. @return their number
+  /// Adds the cells around a node that can be material.
+  /// @returns the number of these cells
   int touch(int i, int j, std::vector<int>& cells) const {
     int count = 0;
     for (int ci = std::max(0, i - 1); ci <= std::min(grid_.nx - 1, i); ++ci)
@@ -152,7 +156,7 @@ class NodeFinder {
   std::vector<signed char> outside_;  // 1: the cell cannot be material
 };
 
-/// Sum of the area fractions of the cells around a node [cells].
+/// Returns the sum of the area fractions of the cells around a node [cells].
 double material_around(const Grid& grid, int node, const VectorXd& fractions) {
   const int i = node / (grid.ny + 1), j = node % (grid.ny + 1);
   double out = 0;
@@ -162,8 +166,9 @@ double material_around(const Grid& grid, int node, const VectorXd& fractions) {
   return out;
 }
 
-/// Forces at the nodes of a place [N].
-/// @param path  of the table of the force. @throws Error (input) where its nodes cannot carry it
+/// Returns the forces at the nodes of a location [N].
+/// @param path  path of the table of the force in the case, for messages
+/// @throws Error (input) where the nodes cannot carry the force
 std::vector<Vec2> forces_at(const Scene& scene, const Grid& grid, const PlaneForce& force,
                             const PlaceNodes& place, const std::string& path) {
   if (force.bearing && bore_of(scene, force.place.disc, grid) == nullptr)
@@ -224,7 +229,7 @@ std::vector<HeldOrLoaded> static_places(const Scene& scene, const Grid& grid,
 
 std::vector<LoadOnVoid> loads_on_void(const Scene& scene, const mmc::BodyProblem& problem,
                                       const VectorXd& fractions) {
-  constexpr double kLeastMaterial = 0.5;  // cells around a node that carries a force
+  constexpr double kLeastMaterial = 0.5;  // least material around a loaded node [cells]
   const Domain& domain = *scene.domain;
   const NodeFinder find(scene, problem.grid, problem.outside);
   std::vector<LoadOnVoid> out;
@@ -277,7 +282,7 @@ StaticConditions static_conditions(const Scene& scene, const Grid& grid,
 std::unique_ptr<mmc::ComplianceEvaluator> build_static_loads(const Scene& scene,
                                                              const mmc::BodyProblem& problem) {
   const StaticConditions conditions = static_conditions(scene, problem.grid, problem.outside);
-  // Rows with a value per load solve every load as it is.
+  // Responses with one value per load need the solution of every load, therefore no compression.
   const std::vector<const mmc::ResponseRow*> rows = mmc::rows_of(problem.goal);
   const bool compress = std::none_of(rows.begin(), rows.end(),
                                      [](const mmc::ResponseRow* row) { return row->per_load; });

@@ -21,7 +21,7 @@ fem::StoredMaterial stored_of(const Scene& scene, const Body& body, const Anchor
           .length = stored};
 }
 
-/// Calls with the joint and the body of every plate of which something is stored.
+/// Calls use(joint, body) for every plate with a material reservoir in a rigid body.
 template <class Use>
 void each_stored(const Scene& scene, const Use& use) {
   for (const Joint& joint : scene.joints) {

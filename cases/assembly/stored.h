@@ -5,10 +5,10 @@
 
 namespace flexmorph::cases {
 
-/// What a rigid body stores of plates that grow out of it, one after the other.
+/// Returns the material reservoirs of a rigid body, one for each plate that is fed out of it.
 std::vector<fem::StoredMaterial> stored_in(const Scene& scene, const std::string& rigid_body);
 
-/// What brings stored material into plates.
+/// Adds the outlets to a model: force elements that transfer material from reservoirs into plates.
 void add_outlets(const Scene& scene, fem::Model& model);
 
 }  // namespace flexmorph::cases

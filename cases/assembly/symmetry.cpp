@@ -10,13 +10,13 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Round-off of places and forces [-].
+/// Relative tolerance for round-off of positions and forces [-].
 constexpr double kSame = 1e-9;
 
-/// The image of a grid in one of its middle lines.
+/// The reflection of a grid in one of its middle lines.
 struct GridImage {
   const Grid& grid;
-  bool in_x;  // the line is vertical
+  bool in_x;  // true if the line is vertical
 
   int node(int k) const {
     const int i = k / (grid.ny + 1), j = k % (grid.ny + 1);
@@ -35,7 +35,7 @@ struct GridImage {
   }
 };
 
-/// How full the cells are of polygons.
+/// Returns the area fractions of polygons in the cells (n_cells).
 VectorXd covered(const Grid& grid, const std::vector<std::vector<Vec2>>& polygons) {
   return area_fractions(grid, {}, grid.dx(), polygons, {});
 }
@@ -49,9 +49,9 @@ bool keeps_held(const GridImage& image, const std::vector<fem::HeldUnknown>& hel
   return all == images;
 }
 
-/// Tells whether every load's image is one of them, or the opposite of one.
-/// @param opposites  whether opposite loads are as good: weight that acts with them makes them
-/// others
+/// Returns true if the mirror image of every load is one of the loads, or the opposite of one.
+/// @param opposites  true if opposite loads are permitted. They are equivalent only without weight,
+///                   because weight acts together with the loads
 bool keeps_loads(const GridImage& image, const std::vector<mmc::LoadCase>& loads, bool opposites) {
   const auto nodal = [&](const mmc::LoadCase& load, bool mirrored) {
     VectorXd out = VectorXd::Zero(2 * image.grid.n_nodes());
@@ -78,7 +78,7 @@ bool keeps_loads(const GridImage& image, const std::vector<mmc::LoadCase>& loads
 constexpr const char *kLoads = "the set of loads is not symmetric",
                      *kMotion = "the loads of a motion are not symmetric";
 
-/// What is known of a design before its optimization, and whether it is symmetric to a middle line.
+/// Tests for the symmetry of a design problem to the middle lines of its grid, before optimization.
 class Symmetries {
  public:
   Symmetries(const Scene& scene, const BodyDesign& design, std::span<const signed char> outside,
@@ -96,7 +96,7 @@ class Symmetries {
       out.y = g.y0 + 0.5 * g.height;
     return out;
   }
-  /// Returns what is not symmetric; empty: everything is.
+  /// Returns a text that names the first input that is not symmetric; empty if all are symmetric.
   std::string obstacle(bool in_x, bool despite_loads) const {
     const GridImage image{design_.grid, in_x};
     if (!keeps_domain(image)) return "the domain is not symmetric";
@@ -115,12 +115,14 @@ class Symmetries {
  private:
   bool keeps_domain(const GridImage& image) const {
     if (!scene_.domain || scene_.domain->shape.outer.empty()) return true;
-    VectorXd sum = VectorXd::Zero(image.grid.n_cells());  // rings may be one another's images
+    // The sum over all rings is compared, because rings may be mirror images of each other.
+    VectorXd sum = VectorXd::Zero(image.grid.n_cells());
     for (const std::vector<Vec2>& ring : rings_of(scene_.domain->shape))
       sum += covered(image.grid, {ring});
     return image.keeps(sum);
   }
-  /// A moving plate is clamped at its root, at the left; a link is held by its two pins.
+  /// Returns true if the supports are symmetric. A moving plate is clamped at its root on the left;
+  /// a link is held by its two pins.
   bool keeps_supports(const GridImage& image) const {
     if (scene_.domain) return keeps_held(image, conditions_.held);
     if (!design_.link) return !image.in_x;

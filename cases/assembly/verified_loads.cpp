@@ -5,7 +5,7 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kRoundness = 0.01;  ///< of a disc's polygon, in cells
+constexpr double kRoundness = 0.01;  ///< Tolerance of the polygon of a disc [cells].
 
 verification::Location place_of(const Scene& scene, const Place& place,
                                 const mmc::BodyProblem& problem) {

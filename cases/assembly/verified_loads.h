@@ -5,7 +5,7 @@
 
 namespace flexmorph::cases {
 
-/// Supports and loads of a plate at rest by position, as the case says them.
+/// Returns the supports and the loads of a static plate by their positions, as given in the case.
 verification::Loads loads_by_position(const Scene& scene, const mmc::BodyProblem& problem);
 
 }  // namespace flexmorph::cases

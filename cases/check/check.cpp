@@ -24,7 +24,8 @@ std::string row(const std::string& what, const std::string& words) {
 
 std::string millions(double operations) { return io::to_text(1e-6 * operations, 2); }
 
-/// Loads alone are what one expects.
+/// Returns the text about the quantities that the load factor multiplies; empty if it multiplies
+/// the loads alone, which is the usual case.
 std::string growing_words(const StaticAnalysis& analysis) {
   if (!analysis.temperatures_grow) return "";
   return analysis.loads_grow ? ", of loads and temperatures" : ", of temperatures";
@@ -38,7 +39,7 @@ std::string words_of(const Region& domain) {
                                           : " with " + std::to_string(n) + " holes");
 }
 
-/// A motion through time, or a path of equilibria.
+/// Describes the time span of a motion, or the path of a static analysis.
 void describe_course(const Scene& scene, std::ostringstream& out) {
   if (scene.statics) {
     const bool load = scene.statics->path == fem::StaticSettings::Path::load;
@@ -84,7 +85,7 @@ std::string load_words(const BodyLoad& load) {
          (load.law.varies() ? ", varies" : "");
 }
 
-/// How material leaves a body, and what its mesh does then.
+/// Describes the material flow of a body and the mesh control that goes with it.
 void describe_flow(const Body& body, double end, std::ostringstream& out) {
   const Flow& flow = *body.flow;
   const double shortest = body.shortest(end), longest = body.longest(end);
@@ -145,7 +146,7 @@ std::string thickness_words(const BodyDesign& d) {
   return out;
 }
 
-/// ", kinks at 0.2, 0.5 s"; of many the first.
+/// Returns the first discontinuities of a drive as text: ", kinks at 0.2, 0.5 s".
 std::string kinks_of(const Drive& drive) {
   constexpr size_t kMost = 5;
   std::string out;
@@ -155,7 +156,7 @@ std::string kinks_of(const Drive& drive) {
   return out.empty() ? out : out + " s";
 }
 
-/// "4 revolute, 4 weld, 1 angle_drive": kinds in the order of the case.
+/// Returns the number of entries of each kind, in the order of the case: "4 revolute, 4 weld".
 template <class T, class Kind>
 std::string kinds_of(const std::vector<T>& list, const Kind& kind) {
   std::vector<std::pair<std::string, int>> counts;
@@ -213,7 +214,7 @@ std::string components_words(const BodyDesign& d) {
          (d.starts > 1 ? ", the best of " + std::to_string(d.starts) + " starts" : "");
 }
 
-/// The line of a symmetric design; empty: it is none.
+/// Returns the line of a summary about the symmetry of a design; empty if it is not symmetric.
 std::string symmetry_row(const mmc::Design& design) {
   const mmc::Symmetry& s = design.symmetry();
   if (!s.any()) return "";
@@ -227,7 +228,7 @@ void describe_design(const Scene& scene, const mmc::BodyProblem& problem, const 
                      std::ostringstream& out) {
   const Grid& g = d.grid;
   const int n = 2 * g.nx * (g.ny + 1), loads = scene.esl->count(scene.time.end);
-  // Natural order from the free end: a band of ny + 2 nodes.
+  // Nodes are in natural order from the free end, so that the bandwidth is ny + 2 nodes.
   const double factor = static_cast<double>(n) * (2 * g.ny + 5);
   out << row("design of " + d.body, components_words(d) + ", " + std::to_string(g.nx) + " x " +
                                         std::to_string(g.ny) + " cells, " + std::to_string(n) +

@@ -5,10 +5,11 @@
 
 namespace flexmorph::cases {
 
-/// Says what a case contains, what it leaves out, and what each part costs.
+/// Returns a text about a case: its contents, the features that it does not use, and the cost of
+/// its items.
 /// @param name       path, or name of a shipped case
 /// @param overrides  KEY=VALUE
-/// @param explain    returns the case with all its defaults instead
+/// @param explain    true: returns the case with all its default values instead
 /// @throws Error (input) when the case cannot be used
 std::string check_case(const std::string& name, std::span<const std::string> overrides,
                        bool explain);

@@ -9,29 +9,32 @@
 namespace flexmorph::cases {
 namespace {
 
-// Of Newton's method: evaluations of the force in a step, the energies counted as one more, and
-// tangents; where material flows a tangent is soon out of date.
+// Mean numbers per time step of Newton's method: evaluations of the force (the evaluation of the
+// energies counts as one), linear solutions, and tangents. With material flow a tangent is outdated
+// sooner.
 constexpr double kForces = 7, kSolutions = 5, kTangents = 0.1, kTangentsOfFlow = 0.4;
-constexpr double kStaticIterations = 3;  // of a step of a path, each with a tangent of its own
+constexpr double kStaticIterations = 3;  // per step of a static path, each with a new tangent
 
-// Sparse solvers copy, order and scatter more than they multiply: per n b² of a band b.
+// Operations of a sparse factorization divided by n b², for n unknowns and the bandwidth b.
+// Copying, ordering and scattering cost more than the multiplications.
 constexpr double kFactor = 6;
 
-// Of a moving element: its matrices, with those of its neighbours where they are alike; its power.
+// Operations of the matrices of a moving element, which equal elements across share, and of the
+// power of a moving element.
 constexpr double kRefresh = 1e6, kPower = 3e5;
-// Of a Gauss point of an element in a body with free lines, tables and forces.
+// Operations per Gauss point of an element in a body with free lines: shape functions and forces.
 constexpr double kFreePoint = 1e4;
-// Of a rigid body, a joint row or a spring.
+// Operations per rigid body, constraint row or spring.
 constexpr double kRigid = 1e3;
 
-/// Gauss points of an element.
+/// Returns the number of Gauss points of an element.
 double points_of(const Body& body) {
   const double n = body.number("bending_points");
   return 49 + n * n;
 }
 
-// Of one core: operations of a motion, of dense and sparse factors; seconds of a frame with its
-// points, of a cell of a design in an iteration; of the start, plots and the report.
+// Rates of one core [operations/s] of motions and of factorizations; seconds per frame and per
+// point of a frame, per cell of a design and iteration; seconds of the start, plots and the report.
 constexpr double kMotionRate = 5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
                  kPointSeconds = 2e-7;
 constexpr double kCellSeconds = 1.5e-6, kStart = 0.1;
@@ -50,7 +53,7 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
     out.forces +=
         times(kForces) * n * (body.has_free_lines() ? kFreePoint * points_of(body) : each.force);
     out.tangents += tangents * n * each.tangent;
-    // Nodes in order along the shorter side: a band of one row of them and a bit.
+    // Nodes are numbered along the shorter side, so that the bandwidth is about one row of nodes.
     const double vectors = element.n_shapes() / (body.row->across ? 4.0 : 2.0);
     const double across = body.row->across ? std::min(body.elements[0], body.elements[1]) + 2 : 1;
     const double band = across * vectors * element.dim();
@@ -66,26 +69,31 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
 
 namespace {
 
+/// Returns the estimated operations of one factorization and solution of a design problem.
 double design_operations(const Scene& scene, const BodyDesign& d) {
   const Grid& g = d.grid;
   const double n = 2.0 * (g.nx + 1) * (g.ny + 1);
   if (scene.domain) {
-    // Nested dissection: of the order n^1.5, each load twice through the factor.
+    // Nested dissection takes O(n^1.5) operations; each load is solved with both triangular
+    // factors.
     const double loads = static_cast<double>(scene.domain->loads.size());
     return 10 * std::pow(n, 1.5) + loads * 4 * n * 24 * std::log2(1.0 + std::min(g.nx, g.ny));
   }
-  // Natural order from the free end: a band of ny + 2 nodes.
+  // Nodes are in natural order from the free end, so that the bandwidth is ny + 2 nodes.
   const double band = 2.0 * g.ny + 5, loads = scene.esl->count(scene.time.end);
   return n * band * (band + 3 * loads);
 }
 
-/// Of motions on the cells of the designs: one a cycle, at most, and that with uniform material.
+/// Returns the CPU time of motions on the cells of the designs [s]: at most one motion per cycle,
+/// and the motion with uniform material.
 double cells_seconds(const Scene& scene, const Extent& extent) {
   const Scene cells = on_cells(scene, scene.verify->cells);
   double step = 0;
   for (const BodyDesign& d : cells.designs) {
     const Body& body = cells.body(d.body);
-    const auto one = body.row->make(body, cells.time.end, {1, 1});  // a few cells, not all
+    const auto one =
+        body.row->make(body, cells.time.end,
+                       {1, 1});  // one element only; its operations do not depend on the mesh
     const ElementOperations each = body.row->operations(body, *one);
     const double along = 0.5 * (body.length + body.longest(cells.time.end)) / body.cell,
                  across = body.elements[1], band = (std::min(along, across) + 2) * body.dim(),
@@ -105,7 +113,7 @@ double expected_seconds(const Scene& scene, const Mechanism* mechanism) {
     const double step = scene.time.integrator == "minimal_coordinates"
                             ? kRigid * 1e2
                             : step_operations(scene, *mechanism).total();
-    // A finer mesh in the two motions of the verification; one motion per cycle for the loads.
+    // The verification computes two motions on a finer mesh; each cycle computes one for the loads.
     const double finer = !scene.verify || scene.judges_on_cells() ? 0
                          : scene.verify->mesh                     ? 4
                                               : std::pow(scene.verify->refine, 2);

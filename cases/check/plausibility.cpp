@@ -17,7 +17,7 @@ namespace {
 
 using io::to_text;
 
-/// An interval of what is ordinary.
+/// An interval of plausible values.
 struct Usual {
   double lower, upper;
   bool holds(double x) const { return x >= lower && x <= upper; }
@@ -25,9 +25,9 @@ struct Usual {
 };
 constexpr Usual kModulus{1e3, 2e12}, kDensity{10, 25000}, kGravity{0.01, 50};
 constexpr Usual kSlenderness{2, 5000}, kThinness{1, 1e5};
-constexpr double kFastest = 5;          // periods in a step
-constexpr double kSlowest = 0.05;       // of a period in the run
-constexpr double kSag = 1, kBend = 10;  // lengths; statics roll a strip up by 3
+constexpr double kFastest = 5;          // periods of the lowest frequency in a time step
+constexpr double kSlowest = 0.05;       // periods of the lowest frequency in the run
+constexpr double kSag = 1, kBend = 10;  // [lengths]; statics may roll a strip up, a bend of 3
 constexpr double kTurns = 20;
 constexpr double kTurnPerStep = 0.5;  // [rad]
 
@@ -44,17 +44,17 @@ Support support_of(const Scene& scene, const Body& body) {
   return frames == 1 ? Support::cantilever : Support::one_point;
 }
 
-/// In statics without weight nobody asks for it, and it is not given.
+/// Returns true if the density matters: without it, in statics without gravity, it may be missing.
 bool has_density(const Scene& scene) { return !scene.statics || scene.gravity; }
 
-/// Returns the words on a support.
+/// Returns the text for a support.
 std::string to_string(Support support) {
   static const std::array<const char*, 4> kWords = {"free", "about one pin", "as a cantilever",
                                                     "between pins"};
   return kWords[static_cast<size_t>(support)];
 }
 
-/// Returns √c of the two lowest bending frequencies.
+/// Returns √c of the two lowest bending frequencies, see BendingFigures.
 std::array<double, 2> roots_of(Support support) {
   constexpr double pi = std::numbers::pi;
   static const std::array<std::array<double, 2>, 4> kRoots = {
@@ -62,7 +62,7 @@ std::array<double, 2> roots_of(Support support) {
   return kRoots[static_cast<size_t>(support)];
 }
 
-/// From the line that is held to the farther end.
+/// Returns the distance from the held line to the farther end [m].
 double arm_of(const Scene& scene, const Body& body) {
   const double length = body.longest(scene.time.end);
   for (const Joint& j : scene.joints) {
@@ -73,7 +73,7 @@ double arm_of(const Scene& scene, const Body& body) {
   return length;
 }
 
-/// Sizes of the force of a load in all, and of its moment.
+/// Absolute values of the resultant force [N] and moment [N m] of a load.
 struct Resultant {
   double force = 0, moment = 0;
 };
@@ -82,7 +82,7 @@ Resultant resultant(const Scene& scene, const BodyLoad& load, const Body& body) 
   const double length = body.longest(scene.time.end);
   const bool side = load.edge == "side_low" || load.edge == "side_high";
   const double edge = side ? length : body.width;
-  // At rest what pulls along the axis bends nothing.
+  // In a static analysis a force along the axis causes no bending.
   double size = std::abs(load.size);
   if (load.force.size() >= 2) {
     VectorXd force = load.force;
@@ -97,8 +97,8 @@ Resultant resultant(const Scene& scene, const BodyLoad& load, const Body& body) 
   return {size * (load.row->at_edge ? edge : length * body.width), 0};
 }
 
-/// Largest deflection of a slender strip, linear: spread weight [N/m], force at the worst place,
-/// moment at an end.
+/// Returns the largest deflection of a slender strip by linear theory [m]: under its weight per
+/// length [N/m], a force at the most unfavourable location, and a moment at an end.
 double deflection(Support support, double EI, double L, double weight, const Resultant& r) {
   if (support == Support::cantilever)
     return weight * std::pow(L, 4) / (8 * EI) + r.force * std::pow(L, 3) / (3 * EI) +
@@ -138,7 +138,7 @@ BendingFigures figures_of(const Scene& scene, const Body& body) {
   return out;
 }
 
-/// Largest size over the run, from the start.
+/// Returns the largest absolute change of a law over the run, relative to the start.
 double reach(const Scene& scene, const Law& law) {
   const auto motion = scene.motion_of(law);
   const std::array<double, 2> range = range_of(motion, scene.time.end);
@@ -146,7 +146,7 @@ double reach(const Scene& scene, const Law& law) {
   return std::max(std::abs(range[0] - start), std::abs(range[1] - start));
 }
 
-/// Whole numbers of degrees, and many of them: nobody says 45 rad.
+/// Returns true for multiples of 15, from 15 on, which are probably degrees: 45 rad is unusual.
 bool looks_like_degrees(double angle) {
   return std::abs(angle) >= 15 && std::abs(std::remainder(angle, 15)) < 1e-9 * std::abs(angle);
 }
@@ -257,7 +257,7 @@ std::vector<BendingFigures> bending_figures(const Scene& scene) {
 std::vector<TurnFigures> turn_figures(const Scene& scene) {
   std::vector<TurnFigures> out;
   if (scene.domain || scene.statics) return out;
-  // Steps that adapt are as short as they must be.
+  // Adaptive steps are short enough for any rotation.
   const bool even = !scene.time.tolerance && scene.time.integrator != "minimal_coordinates";
   const double part = even ? std::min(1.0, scene.time.step / scene.time.end) : 0;
   for (const Hub& hub : scene.hubs) {

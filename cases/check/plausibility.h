@@ -8,49 +8,60 @@
 #include "cases/assembly/build.h"
 #include "cases/assembly/resource_estimate.h"
 
-/// Numbers by which a wrong unit shows: 5 Pa, 50 m, degrees for radians.
+/// Plausibility checks: numbers that reveal a wrong unit, such as 5 Pa, 50 m, or degrees in place
+/// of radians.
 namespace flexmorph::cases {
 
-/// How a strip is held, as far as its bending depends on it.
+/// Support of a strip, as far as its bending depends on it.
 enum class Support {
-  none,        ///< free
-  one_point,   ///< turns about one point
-  cantilever,  ///< one edge is held, with its direction
-  two_places   ///< between two or more points, taken for pins
+  none,        ///< The strip is free.
+  one_point,   ///< The strip turns about one point.
+  cantilever,  ///< One edge is clamped: its direction is held.
+  two_places   ///< The strip is held at two or more points, which are taken as pins.
 };
 
-/// Bending of a plate or beam as of a slender strip of its longest length L and the depth d that it
-/// bends by (thickness in space, width in the plane): f = c / (2 π L²) √(E/ρ) d/√12, with c of its
-/// support (1.8751² of a cantilever, π² between pins, 3.9266² about one, 4.7300² free).
+/// Plausibility numbers of the bending of a plate or beam, which is taken as a slender strip with
+/// its longest length L and the depth d in the direction of bending (thickness in space, width in
+/// the plane): f = c / (2 π L²) √(E/ρ) d/√12 with the factor c of its support (1.8751² of a
+/// cantilever, π² between pins, 3.9266² about one pin, 4.7300² free).
 struct BendingFigures {
-  std::string body;
-  Support support = Support::none;
-  double length = 0;                    ///< of the longer arm where it is held in between [m]
-  double depth = 0;                     ///< [m]
-  std::array<double, 2> frequencies{};  ///< the lowest [Hz]; 0: statics without weight
-  double step_frequency = 0;            ///< h times the lowest [-]; 0: nothing moves
-  std::optional<double> sag, bend;      ///< under gravity, under its loads, by length; linear
+  std::string body;                 ///< Name of the plate or beam.
+  Support support = Support::none;  ///< Support of the strip.
+  double length = 0;                ///< Length L; of the longer arm if it is held in between [m].
+  double depth = 0;                 ///< Depth d in the direction of bending [m].
+
+  /// Two lowest natural frequencies [Hz]; 0 in a static analysis without gravity.
+  std::array<double, 2> frequencies{};
+
+  double step_frequency = 0;  ///< Time step times lowest frequency [-]; 0: no motion.
+
+  /// Deflections under gravity (under the loads) divided by the length, by linear theory [-].
+  std::optional<double> sag, bend;
+
+  /// Returns the ratio of length and depth [-].
   double slenderness() const { return length / depth; }
 };
+/// Returns the plausibility numbers of the bending of all plates and beams.
 std::vector<BendingFigures> bending_figures(const Scene& scene);
 
-/// Rotation of a hub, or of the drive of an angle.
+/// Plausibility numbers of the rotation of a hub, or of a joint whose angle a drive prescribes.
 struct TurnFigures {
-  std::string what, key;
-  double angle = 0;     ///< largest size over the run, from the start [rad]
-  double per_step = 0;  ///< on the average; 0 where steps adapt [rad]
+  std::string what, key;  ///< Text that names the hub or joint, and its key in the case.
+  double angle = 0;       ///< Largest absolute angle over the run, relative to the start [rad].
+  double per_step = 0;    ///< Mean angle per time step [rad]; 0 with adaptive steps.
 };
+/// Returns the plausibility numbers of all rotations; none for static scenes and analyses.
 std::vector<TurnFigures> turn_figures(const Scene& scene);
 
-/// Returns a sentence on every number that is out of the ordinary, with its place in the case.
+/// Returns one sentence about every implausible number, with its location in the case.
 std::vector<std::string> odd_remarks(const Scene& scene);
 
-/// Returns a line of a summary.
+/// Returns one line of a summary: a name, and the text about it in the second column.
 std::string summary_row(const std::string& what, const std::string& words);
 
-/// Returns the part of a summary that makes mistakes visible: lowest frequencies, deflections,
-/// turns, what the run will take, and what is out of the ordinary.
-/// @param mechanism  of a scene that moves, else null
+/// Returns the section of a summary that makes mistakes visible: lowest natural frequencies,
+/// deflections, rotations, the resource estimate, and implausible numbers.
+/// @param mechanism  mechanism of a scene that moves, else null
 std::string figures_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine);
 
 }  // namespace flexmorph::cases

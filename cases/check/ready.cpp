@@ -19,20 +19,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The program that runs, or the shared library with this function; empty where nobody knows.
+/// Returns the path of the running program, or of the shared library that contains this function;
+/// empty if it is unknown.
 fs::path own_file(const void* function) {
   Dl_info found{};
   const bool known = dladdr(function, &found) != 0 && found.dli_fname != nullptr;
-  std::error_code none;  // where there is no /proc
+  std::error_code none;  // ignored: some systems have no /proc
   const fs::path program = fs::read_symlink("/proc/self/exe", none);
   if (!known) return program;
   const fs::path file = fs::canonical(found.dli_fname, none);
   return none ? program : file;
 }
 
-/// Where shipped cases are: of an installed program or shared library share/flexmorph/cases beside
-/// the bin/, lib/ or lib/ARCHITECTURE/ it is in, wherever that was moved to; else in the source
-/// tree.
+/// Returns the folder of the shipped cases. For an installed program or shared library it is
+/// share/flexmorph/cases beside its folder bin/, lib/ or lib/ARCHITECTURE/, even if the
+/// installation was moved; otherwise it is in the source tree.
 fs::path cases_folder() {
   std::error_code none;
   const fs::path beside = own_file(reinterpret_cast<const void*>(&cases_folder)).parent_path();
@@ -43,9 +44,10 @@ fs::path cases_folder() {
   return kCasesFolder;
 }
 
-/// Refuses joints that depend on each other, and bodies that do not reach their joints.
+/// Throws for joints that depend on each other, and for bodies that do not reach their joints.
 void require_start(Mechanism& mechanism) {
-  constexpr double kMiss = 1e-6;  // of the model: coordinates in cases are rounded
+  constexpr double kMiss =
+      1e-6;  // relative to the size of the model: coordinates in cases are rounded
   fem::Workspace& model = mechanism.model;
   const fem::State x =
       fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
@@ -60,10 +62,10 @@ void require_start(Mechanism& mechanism) {
                        " m: bodies that are not deformed do not reach their joints");
 }
 
-/// Refuses limits that the full design misses under its fixed loads.
+/// Throws for limits that the full design violates under its fixed loads.
 void require_attainable(const Scene& scene, const mmc::BodyProblem& problem,
                         mmc::ComplianceEvaluator& loads) {
-  if (scene.gravity) return;  // more material weighs more
+  if (scene.gravity) return;  // more material also increases the load
   const mmc::Figures full = mmc::full_values(problem, loads);
   for (const mmc::Limit& limit : problem.goal.limits) {
     if (!limit.wants_material()) continue;
@@ -75,13 +77,15 @@ void require_attainable(const Scene& scene, const mmc::BodyProblem& problem,
   }
 }
 
+/// Builds the model, the design problems and the loads of a case, and throws if one cannot be
+/// built.
 void require_parts(const PreparedCase& prepared) {
   const Scene& scene = prepared.scene();
   if (!scene.domain) {
-    // The joints of the rigid model have the names of the case.
+    // The rigid model is checked first because its joints have the names of the case.
     if (const fem::RigidKinematics* rigid = prepared.rigid())
       fem::require_motion(*rigid, scene.time.end);
-    // One evaluation: loads and terms find their places, or say what they cannot do.
+    // One evaluation lets loads and terms determine their locations, or throw.
     Mechanism mechanism = prepared.mechanism();
     if (mechanism.model.n_constraints() > 0) require_start(mechanism);
     const fem::State x = mechanism.model.reference();
@@ -99,7 +103,7 @@ void require_parts(const PreparedCase& prepared) {
     static_places(scene, problem.grid, problem.outside);
 }
 
-/// Keeps the entry that a message names earliest.
+/// Finds the entry whose quoted name comes first in a message.
 class FirstNamed {
  public:
   explicit FirstNamed(const std::string& message) : message_(message) {}
@@ -158,7 +162,8 @@ ReadyCase ready_case(const std::string& name, std::span<const std::string> overr
 
 std::vector<std::string> shipped_cases() {
   std::vector<std::string> out;
-  std::error_code none;  // of a program that was moved away from its cases
+  std::error_code
+      none;  // ignored: the folder is missing if the program was moved without its cases
   for (const auto& entry : std::filesystem::directory_iterator(cases_folder(), none))
     if (entry.path().extension() == ".toml") out.push_back(entry.path().stem().string());
   std::sort(out.begin(), out.end());
@@ -171,7 +176,7 @@ std::string find_case(const std::string& name) {
   const std::vector<std::string> shipped = shipped_cases();
   if (std::find(shipped.begin(), shipped.end(), name) != shipped.end())
     return cases_folder() / (name + ".toml");
-  // A pipe is a file as well; a folder is refused by who reads it.
+  // A pipe is accepted, too; the reader of the file throws for a folder.
   if (std::filesystem::exists(name)) return name;
   const std::string stem = std::filesystem::path(name).stem().string();
   const std::string close = io::nearest(stem, shipped);

@@ -8,34 +8,40 @@
 
 namespace flexmorph::cases {
 
-/// Cells of a design at rest whose solver is built for a look: a second's work. Of larger ones only
-/// the places of loads and supports are looked up, without gigabytes for a factor nobody uses.
+/// Largest number of cells of a static design whose solver is built for a check, which takes about
+/// a second. For larger designs only the locations of loads and supports are determined, because a
+/// factor of the matrix would take gigabytes of memory without being used.
 inline constexpr int kMostBuilt = 200'000;
 
-/// A case that can be run: read, of a size for this machine, and built once.
+/// A case that can be run: it is read, small enough for this machine, and was built once.
 struct ReadyCase {
-  io::CaseFile file;
-  PreparedCase prepared;
+  io::CaseFile file;      ///< Case file with the overrides.
+  PreparedCase prepared;  ///< Scene, with the models built from it.
 };
-/// @param name  path, or name of a shipped case
-/// @param directory  of the run folder, whose disk it must fit on; empty: as the case says
-/// @throws Error naming the file, and line and column where they can be told.
+/// Reads a case and builds its model, its design problems and its loads, as a run does first.
+/// @param name       path, or name of a shipped case
+/// @param overrides  KEY=VALUE
+/// @param directory  run folder, on whose disk the results must fit; empty: as the case says
+/// @throws Error naming the file, and line and column where they are known.
 ReadyCase ready_case(const std::string& name, std::span<const std::string> overrides,
                      const std::string& directory = "");
 
-/// Path of a case file: the path itself, or that of a shipped case of this name.
+/// Returns the path of a case file: the path itself, or the path of the shipped case of this name.
 /// @throws Error (input) naming the shipped cases.
 std::string find_case(const std::string& name);
-/// Names of the shipped cases.
+/// Returns the names of the shipped cases.
 std::vector<std::string> shipped_cases();
 
-/// Builds what a run of the case builds first: what cannot be built is refused here, and before
-/// that what is too large for this machine (see require_room()).
-/// @throws Error, which names the case file where the scene comes from one
+/// Builds the model, the design problems and the loads of a case, as a run does first, so that
+/// errors are reported before the run. Before that it throws for a case that is too large for this
+/// machine (see require_room()).
+/// @param directory  run folder; empty: as the case says
+/// @throws Error, which names the case file if the scene comes from one
 void require_buildable(const PreparedCase& prepared, const std::string& directory = "");
 
-/// The message with the place in the case file in front: that of the joint, body, spring, drive or
-/// load that it names first in quotes, else the file alone. As it is where it begins with a place.
+/// Returns the message with the location in the case file in front of it: the location of the
+/// joint, body, rigid body, spring, drive or load whose name is quoted first in the message, else
+/// the file alone. A message that already begins with a location is returned unchanged.
 std::string located_refusal(const Scene& scene, const std::string& message);
 
 }  // namespace flexmorph::cases

@@ -1,5 +1,7 @@
-// A carriage runs along a guide and is slowed by the air, while a boom grows out of it. Writes the
-// boom for ParaView, and compares the carriage with one whose boom is rigid:  compose FOLDER
+// A carriage slides along a guide and is decelerated by air drag, while a boom is deployed from it.
+// The program writes the boom for ParaView, and compares the final speed with that of a carriage
+// whose boom is rigid.
+//   compose FOLDER
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
@@ -14,10 +16,10 @@
 
 using namespace flexmorph;
 const double kMass = 2, kDrag = 1, kSpeed = 1, kShort = 0.3, kLong = 0.6, kWidth = 0.05, kEnd = 1;
-const double kGrowth = 0.2;                                // rate of the boom's length [m/s]
+const double kGrowth = 0.2;                                // rate of the length of the boom [m/s]
 const fem::PlaneSection kSection(0.002, 7e10, 0.3, 2700);  // thickness, E, Poisson ratio, density
 
-/// A force element of its own: the drag c |v| v of the air on point a.
+/// A user-defined force element: the drag c |v| v of the air on point a.
 class Drag final : public fem::PairLink {
  public:
   explicit Drag(const fem::MarkerPlace& a) : PairLink("air", a, {}, {Part::kPositionA}, true) {}
@@ -33,7 +35,8 @@ class Drag final : public fem::PairLink {
   }
 };
 
-/// The boom: its root line moves through the material, all others are fixed to it.
+/// Returns the elements of the boom. The mesh line at the root moves through the material; all
+/// other mesh lines have constant material coordinates.
 std::unique_ptr<fem::Element> growing_plate() {
   std::vector<fem::MaterialLine> along, across;
   for (int i = 0; i <= 4; ++i) along.push_back({kLong - kShort * (4 - i) / 4, {}});
@@ -73,7 +76,7 @@ int main(int argc, char** argv) {
   };
   const fem::MotionResult result = fem::integrate(model, {&growth, 1}, settings, write);
   const double v = fem::frame_of(model.body("carriage"), result.final).origin_rate.x();
-  // What grows out of the carriage moves as fast as it: (m + m' t) dv/dt = -c v².
+  // With a rigid boom, deployed material has the speed of the carriage: (m + m' t) dv/dt = -c v².
   const double per_time = kSection.density * kSection.thickness * kWidth * kGrowth,
                mass = kMass + per_time * kShort / kGrowth;
   const double rigid = 1 / (1 / kSpeed + kDrag / per_time * std::log1p(per_time * kEnd / mass));

@@ -1,4 +1,4 @@
-// Loads a case, computes its motion in memory and prints a column of it:
+// Loads a case, computes its motion in memory and prints a column of its table.
 //   move_case CASE COLUMN [KEY=VALUE]...
 #include <cstdio>
 

@@ -1,5 +1,6 @@
-// Adds a response and an optimizer to those that cases can name, and designs the shipped short beam
-// with both: stiff, with 40 % of the first moment of a full plate about its root.
+// Registers a user-defined response and a user-defined optimizer, so that cases can name them. Then
+// it designs the shipped short beam with both: minimum compliance with at most 40 % of the first
+// moment of a full plate about its root.
 //   own_parts
 #include <cstdio>
 
@@ -10,7 +11,7 @@
 
 using namespace flexmorph;
 
-/// The first moment of the material about the left edge [kg m].
+/// A response: the first moment of the material about the left edge [kg m].
 class FirstMoment final : public mmc::Response {
  public:
   explicit FirstMoment(const mmc::Plate& plate) : arm_(1, plate.grid.n_cells()) {
@@ -34,7 +35,8 @@ const mmc::ResponseRow kFirstMoment{.name = "first_moment",
                                     .linear = true,
                                     .make = mmc::make_response<FirstMoment>};
 
-/// Steepest descent of the objective and of violated limits; half the step where that is no better.
+/// An optimizer: steepest descent of the objective plus a penalty on violated limits. The step is
+/// halved if it does not decrease this sum.
 class SteepestDescent final : public optim::Optimizer {
  public:
   explicit SteepestDescent(const optim::Settings& settings) : settings_(settings) {

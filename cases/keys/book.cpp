@@ -29,7 +29,7 @@ bool is_table(const io::Key& key) {
   });
 }
 
-/// What an entry is called and which kind it is come first; the others as they stand in the files.
+/// Returns the rank of a key in its table: the name first, then the type, then all other keys.
 int rank(const io::Key& key) {
   if (key.name == "name") return 0;
   return key.name == "type" || key.name == "element" ? 1 : 2;
@@ -72,7 +72,7 @@ std::vector<KeyTable> made_book() {
   return book;
 }
 
-/// "> 0", ">= 0 and <= 1", or nothing.
+/// Returns the limits of a quantity as text: "> 0", ">= 0 and <= 1", or an empty text.
 std::string limits_words(const io::Quantity& q) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   std::string text;
@@ -96,7 +96,7 @@ std::string one_word(const io::Form& form) {
   return text;
 }
 
-/// "number", in lists "numbers".
+/// Returns the type of a value as text: "number", for lists "numbers".
 std::string value_words(const io::Form& form) {
   const std::string many = form.is_list ? "s" : "";
   switch (form.kind) {

@@ -6,50 +6,55 @@
 
 #include "io/case_files/key.h"
 
-/// The keys of case files as people and programs read about them. All that is said here comes from
-/// the declarations beside the readers (io/case_files/key.h).
+/// The reference of the keys of case files, for users and for programs. All texts come from the
+/// declarations next to the code that reads the keys (io/case_files/key.h).
 namespace flexmorph::cases {
 
-/// The keys of one table, or of several that have the same ones.
+/// The keys of one table of case files, or of several tables with equal keys.
 struct KeyTable {
-  std::vector<std::string> paths;    ///< "body.flow"; "" is the file itself
-  std::vector<const io::Key*> keys;  ///< by file and line of their declarations
-  const io::Key* own = nullptr;      ///< the key of the table itself; none of the file
-  /// "[time]", "[[design.solid]], [[design.void]]", "top of the file".
+  std::vector<std::string> paths;    ///< Paths, such as "body.flow"; "" is the file itself.
+  std::vector<const io::Key*> keys;  ///< Keys: name, type, then by file and line of declaration.
+  const io::Key* own = nullptr;      ///< Key of the table itself; null for the file.
+
+  /// Returns the title: "[time]", "[[design.solid]], [[design.void]]", "top of the file".
   std::string title() const;
 };
 
-/// All tables, in the order of tables::order().
+/// Returns all tables in the order of tables::order().
 /// @throws std::logic_error when a table has no keys: its reader is not part of the program.
 const std::vector<KeyTable>& key_book();
 
-/// The table of this path ("top" is the file itself).
-/// @throws Error (input) naming the nearest one.
+/// Returns the table of a path ("top" is the file itself).
+/// @throws Error (input) with the most similar path if there is no such table.
 const KeyTable& table_of_keys(const std::string& path);
-/// Their paths.
+/// Returns the paths of all tables; "top" is the file itself.
 std::vector<std::string> key_table_names();
 
-/// "number > 0 [m], or name of a drive".
+/// Returns the type of a key as text, such as "number > 0 [m], or name of a drive".
 std::string type_words(const io::Key& key);
-/// "required", "0.8", or in words.
+/// Returns the default of a key as text: "required", a value such as "0.8", or words.
 std::string default_words(const io::Key& key);
-/// The sentence, after the condition under which the key may be there.
+/// Returns the sentence of a key, after the condition under which the key is allowed.
 std::string sentence_of(const io::Key& key);
-/// What the words of its keys mean, by key and word; empty where that is plain.
+/// Returns the explanations of the words that the keys of a table allow: key, word and sentence.
+/// Keys whose words need no explanation are left out.
 std::vector<std::array<std::string, 3>> meanings_of(const KeyTable& table);
-/// As it is written in a case: NAME where the name is free.
+/// Returns the name of a key as it is shown: NAME if the user chooses the name.
 std::string shown_name(const io::Key& key);
 
-/// All of it, or one table, in columns for a screen of this width.
+/// Returns the reference of one table, or of all tables if `table` is empty, in columns.
+/// @param width  width of the screen [characters]
 std::string keys_for_terminal(const std::string& table, size_t width);
-/// The reference in cases/README.md.
+/// Returns the reference of all tables as Markdown, for cases/README.md.
 std::string keys_as_markdown();
-/// Replaces a generated section of a Markdown file, between the lines that mark it.
-/// @param name  of the section in these lines: "keys"
+/// Replaces a generated section of a Markdown file between the two lines that mark it.
+/// @param text  content of the file
+/// @param name  name of the section in these lines: "keys"
+/// @returns the new content
 /// @throws Error (input) for a file without these lines
 std::string with_section(const std::string& text, const std::string& name,
                          const std::string& section);
-/// JSON schema (draft-07) of a case.
+/// Returns the JSON schema (draft-07) of case files.
 std::string keys_as_schema();
 
 }  // namespace flexmorph::cases

@@ -11,7 +11,7 @@ namespace {
 
 using Kind = io::Form::Kind;
 
-/// The key on the command line, and the words that it takes; none where they are without end.
+/// A key that can be set on the command line, with its allowed words; none for numbers and texts.
 struct Settable {
   std::string key;
   std::vector<std::string> words;
@@ -48,7 +48,7 @@ std::vector<Settable> settable_keys() {
   return out;
 }
 
-/// What both shells know, as functions that print words.
+/// Returns shell functions that print words, for scripts of both shells.
 std::string shared_functions(const std::vector<CommandWords>& commands) {
   std::string out = "_flexmorph_words() {  # of a key\n  case \"$1\" in\n";
   std::string keys;

@@ -1,11 +1,11 @@
 #include "cases/keys/book.h"
 #include "geometry/base.h"
 
-/// The book of keys as a part of cases/README.md.
+/// The reference of keys as a section of cases/README.md.
 namespace flexmorph::cases {
 namespace {
 
-/// In a cell of a table.
+/// Returns a text for a cell of a Markdown table.
 std::string cell(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);

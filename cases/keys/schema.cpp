@@ -6,7 +6,7 @@
 #include "cases/keys/book.h"
 #include "io/json.h"
 
-/// The book of keys as a JSON schema, for editors of TOML.
+/// The reference of keys as a JSON schema, for editors of TOML files.
 namespace flexmorph::cases {
 namespace {
 
@@ -69,7 +69,7 @@ Json default_of(const io::Value& value) {
   return std::visit([](const auto& each) { return Json(each); }, value);
 }
 
-/// One key, which may be declared several times, each time for other cases.
+/// Returns the schema of one key. The key may have several declarations with different conditions.
 Json key_schema(const std::vector<const io::Key*>& keys, const std::string& path) {
   Json forms = Json::array();
   std::string description;

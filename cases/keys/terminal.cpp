@@ -4,7 +4,7 @@
 
 #include "cases/keys/book.h"
 
-/// The book of keys in columns.
+/// The reference of keys in columns for a terminal.
 namespace flexmorph::cases {
 namespace {
 
@@ -12,7 +12,7 @@ constexpr size_t kColumns = 4;
 using Cells = std::array<std::string, kColumns>;
 using Widths = std::array<size_t, kColumns>;
 
-/// Lines of at most `width` characters; a longer word has a line of its own.
+/// Returns lines of at most `width` characters; a longer word gets a separate line.
 std::vector<std::string> wrapped(const std::string& text, size_t width) {
   std::vector<std::string> lines(1);
   std::istringstream words(text);
@@ -57,7 +57,7 @@ void write_table(const KeyTable& table, size_t width, std::string& out) {
     rows.push_back({shown_name(*key), type_words(*key), default_words(*key), sentence_of(*key)});
     widths[0] = std::max(widths[0], rows.back()[0].size());
   }
-  // What names leave is shared between type, default and sentence.
+  // The width that remains beside the names is divided between type, default and sentence.
   const size_t taken = 2 + widths[0] + 2 * (kColumns - 1);
   const size_t rest = std::max<size_t>(60, width > taken ? width - taken : 0);
   widths[1] = 3 * rest / 10;

@@ -18,7 +18,7 @@ std::string contents_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// inputs/NAME, or inputs/2_NAME where another file of the case has the name.
+/// Returns a unique name of a copy: inputs/NAME, or inputs/2_NAME if another file has this name.
 std::string free_name(const std::string& path, std::set<std::string>& taken) {
   const std::string name = fs::path(path).filename().string();
   std::string out = "inputs/" + name;
@@ -26,14 +26,15 @@ std::string free_name(const std::string& path, std::set<std::string>& taken) {
   return out;
 }
 
-/// Changes that make a case read its copies, and where these come from.
+/// Overrides that make a case read the copies of its files, with the paths of the originals and the
+/// names of the copies.
 struct Copies {
   std::vector<std::string> changes, sources, names;
 
   explicit Copies(const io::CaseFile& file) {
     std::set<std::string> taken;
     for (const std::string& each : overrides_of_files(file)) {
-      const size_t at = each.find('=');  // "drive.0.csv='/data/turn.csv'"
+      const size_t at = each.find('=');  // such as "drive.0.csv='/data/turn.csv'"
       sources.push_back(each.substr(at + 2, each.size() - at - 3));
       names.push_back(free_name(sources.back(), taken));
       changes.push_back(each.substr(0, at) + "='" + names.back() + "'");

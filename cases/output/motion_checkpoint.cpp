@@ -14,16 +14,17 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kFormat = "flexmorph motion 2";
-/// Of the time between two files, that it may take to write one.
+/// Largest fraction of the time between two writes that a write may take.
 constexpr double kShare = 0.05;
 
-/// What cannot be read is empty.
+/// Returns the contents of a file; empty if it cannot be read.
 std::string contents_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The case of a folder and the files that it reads, by their names.
+/// Returns the names and contents of the case of a folder and of the files that it reads, sorted by
+/// name.
 std::string case_of(const std::string& folder) {
   std::vector<std::string> paths = {folder + "/case.toml"};
   if (fs::is_directory(folder + "/inputs"))

@@ -9,28 +9,35 @@
 
 namespace flexmorph::cases {
 
-/// What a motion needs to go on, in a file of its run folder, while the run is not done.
+/// The checkpoint of a motion: a file in the run folder with the data that are needed to resume the
+/// motion while the run is not finished.
 ///
-/// File: a line with its format and the program's version, then a checksum of what is left: what
-/// the motion depends on (its case with the files it reads, its design and mesh) as a checksum, the
-/// frames that must be there, and the memory, in the byte order of the machine. It is replaced as a
-/// whole, and on the disk when the motion goes on.
+/// The file consists of a line with its format and the version of the program, a checksum of the
+/// rest, and the rest: a checksum of everything that the motion depends on (its case with the files
+/// that the case reads, its design and mesh), the names of the frames that must exist, and the
+/// archive of the motion, in the byte order of the machine. Each write replaces the whole file,
+/// which is on the disk before the motion continues.
 class MotionCheckpoint {
  public:
-  /// @param name  of the file
-  /// @param about  what the motion depends on besides the case
-  /// @param every  seconds at least between two files
+  /// Prepares the checkpoint of a motion; nothing is written.
+  /// @param folder  run folder; outlives the object
+  /// @param name    name of the file
+  /// @param about   text of everything that the motion depends on besides the case
+  /// @param every   shortest time between two writes [s]
   MotionCheckpoint(RunFolder& folder, const std::string& name, const std::string& about,
                    double every);
 
-  /// The memory; none where there is no file, or one that cannot be used.
-  /// @param why  is why not: "it is damaged"; empty where there is no file
+  /// Returns the archive of the motion; nothing if there is no file or if it cannot be used.
+  /// @param why  receives the reason, such as "it is damaged"; empty if there is no file
   std::optional<std::string> read(std::string& why) const;
 
-  /// Is it time? Files that take long are written the more seldom: they cost a twentieth at most.
+  /// Returns true if a new file should be written. The longer a write takes, the longer is the time
+  /// until the next one, so that writing takes at most a twentieth of the run time.
   bool is_due() const;
-  /// @param frames  files that the motion has written, as RunFolder::file() takes them
-  /// @throws Error (numerical) when it cannot be written; the one before it stays.
+  /// Writes the checkpoint file as a whole.
+  /// @param memory  archive of the motion
+  /// @param frames  files that the motion has written, with names as for RunFolder::file()
+  /// @throws Error (numerical) when it cannot be written; the previous file is kept.
   void write(const std::string& memory, std::vector<std::string> frames);
 
  private:

@@ -72,7 +72,7 @@ void FrameWriter::add_rigid_parts(const StepRecord& step) {
     ++part;
   }
   for (const Hub& hub : scene.hubs) {
-    Joint held;  // as one that is welded to the hub
+    Joint held;  // stands for a joint that is welded to the hub
     held.to = hub.name;
     const fem::FrameMotion frame = hub_drive(scene, held)(t);
     if (const double radius = drawn_radius(scene, hub); radius > 0)
@@ -90,7 +90,7 @@ void FrameWriter::add_rigid_parts(const StepRecord& step) {
 }
 
 void SnapshotWriter::add(const StepRecord& step) {
-  // The step that reaches the time of a picture shows it: no step is cut for a picture.
+  // A snapshot shows the first step that reaches its time; no time step is shortened for it.
   const Scene& scene = shapes_.scene();
   const auto shown = static_cast<double>(snapshots_.size());
   if (shown >= n_ || step.abscissa < shown / (n_ - 1) * scene.time.end - 1e-9) return;

@@ -10,17 +10,21 @@ namespace flexmorph::cases {
 /// Computes the deformed surfaces of the bodies of a scene.
 class BodyShapes {
  public:
+  /// Prepares the surfaces of all bodies.
+  /// @param scene      scene of the motion; outlives the object
   /// @param densities  mass scale factors of the cells, one vector per design (n_cells); empty:
-  /// full material
+  ///                   full material
   BodyShapes(const Scene& scene, std::vector<VectorXd> densities);
 
+  /// Returns the scene of the motion.
   const Scene& scene() const { return scene_; }
+  /// Returns true if a body has a design.
   bool is_designed(size_t body) const { return design_of(body) < scene_.designs.size(); }
-  /// The design grid of a designed body.
+  /// Returns the grid of the design of a body.
   const Grid& grid_of(size_t body) const { return scene_.designs[design_of(body)].grid; }
-  /// The surface of a designed body, cell by cell of its design.
+  /// Returns the deformed surface of a body with a design, with one quad per cell.
   DesignedSurface designed(const StepRecord& step, size_t body) const;
-  /// The mid-surface of a body without a design.
+  /// Returns the deformed mid-surface of a body without a design.
   Surface deformed(const StepRecord& step, size_t body) const;
 
  private:
@@ -28,14 +32,18 @@ class BodyShapes {
 
   const Scene& scene_;
   std::vector<VectorXd> densities_;
-  std::vector<fem::ReferencePose> poses_;  // of the bodies at the start
+  std::vector<fem::ReferencePose> poses_;  // poses of the undeformed bodies at the start
 };
 
-/// Writes a frame of motion/motion.pvd at every stop that is a multiple of a time: all bodies,
-/// rigid bodies that have a size, hubs, and point masses. Frames of a path show its bodies.
+/// Writes the frames of motion/motion.pvd. A motion has a frame at every stop that is a multiple of
+/// a spacing in time, with all bodies, rigid bodies that have a size, hubs, and point masses in the
+/// plane. The frames of a path of equilibria contain plates and beams only.
 class FrameWriter : public StepWriter {
  public:
-  /// @param every  spacing of the frames of a motion [s]; a path has a frame per equilibrium
+  /// Prepares a writer of frames.
+  /// @param shapes  surfaces of the bodies; outlives the writer
+  /// @param every   spacing of the frames of a motion [s]; a path has a frame per equilibrium
+  /// @param folder  run folder; outlives the writer
   FrameWriter(const BodyShapes& shapes, double every, RunFolder& folder)
       : shapes_(shapes), every_(every), folder_(folder) {}
   void add(const StepRecord& step) override;
@@ -50,11 +58,13 @@ class FrameWriter : public StepWriter {
   RunFolder& folder_;
 };
 
-/// Takes pictures of a mechanism at the first steps that reach evenly spaced times.
+/// Makes snapshots of a mechanism at the first steps that reach equally spaced times.
 class SnapshotWriter : public StepWriter {
  public:
-  /// @param n  pictures over the whole motion, at least 2
-  /// @param snapshots  receives them; outlives the writer
+  /// Prepares a writer of snapshots.
+  /// @param shapes     surfaces of the bodies; outlives the writer
+  /// @param n          number of snapshots of the whole motion, at least 2
+  /// @param snapshots  receives the snapshots; outlives the writer
   SnapshotWriter(const BodyShapes& shapes, int n, std::vector<io::PlaneFrame>& snapshots)
       : shapes_(shapes), n_(n), snapshots_(snapshots) {}
   void add(const StepRecord& step) override;

@@ -5,7 +5,7 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Writes displacement and stress under the worst load.
+/// Writes displacement and stress under the worst load to a VTK file.
 void write_fields(const std::string& path, const verification::OutlineVerification& j) {
   const std::vector<double> mises = mises_of(j);
   std::vector<double> piece(j.mesh.piece.begin(), j.mesh.piece.end());

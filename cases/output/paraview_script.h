@@ -2,8 +2,8 @@
 
 namespace flexmorph::cases {
 
-/// paraview.py of a run folder: Python for ParaView that opens what the folder has, coloured. It
-/// finds the folder by its own place.
+/// Text of paraview.py in a run folder: a Python script for ParaView that opens the results of the
+/// folder and colours them. The script takes the folder in which it is stored.
 extern const char* const kParaViewScript;
 
 }  // namespace flexmorph::cases

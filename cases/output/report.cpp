@@ -14,9 +14,10 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr size_t kShapes = 4;  // pictures of a plate in space
+constexpr size_t kShapes = 4;  // number of pictures of a plate in space
 
-/// Body-fitted compliance, its error and the volume of a body, where its outline was verified.
+/// Returns the body-fitted compliance, its estimated error and the volume of a body; empty texts if
+/// its outline was not verified.
 std::array<std::string, 3> outline_cells(const DesignResult& design, const std::string& body) {
   for (const VerifiedOutline& o : design.outlines)
     if (o.body == body && o.verification)
@@ -25,7 +26,7 @@ std::array<std::string, 3> outline_cells(const DesignResult& design, const std::
   return {};
 }
 
-/// Columns as rows: many figures of few bodies.
+/// Transposes a table, because there are many numbers of few bodies.
 std::vector<std::vector<std::string>> turned(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::vector<std::string>> out(rows.front().size());
   for (size_t k = 0; k < out.size(); ++k)
@@ -68,7 +69,7 @@ io::ReportSection results_section(const Scene& scene, const DesignResult& design
   return out;
 }
 
-/// Parts beside the design and uniform material.
+/// Returns the comparison of a given part with the design and with uniform material.
 io::ReportSection comparison_section(const PartComparison& comparison) {
   io::ReportSection out;
   out.heading = "Part, design, uniform material";
@@ -78,7 +79,7 @@ io::ReportSection comparison_section(const PartComparison& comparison) {
   return out;
 }
 
-/// The load cases of a plate at rest.
+/// Returns the section about the load cases of a static plate.
 io::ReportSection loads_section(const DesignResult& design) {
   io::ReportSection out;
   out.heading = "Load cases";
@@ -98,7 +99,7 @@ io::ReportSection loads_section(const DesignResult& design) {
   return out;
 }
 
-/// Expectations that were missed come before everything else.
+/// Returns the section about expected results; missed ones come first.
 io::ReportSection expect_section(const std::vector<Expected>& expectations) {
   io::ReportSection out;
   out.heading = "Expected";
@@ -139,7 +140,8 @@ std::string measure_title(const Cycle& cycle) {
                                                          : "deflection [m]";
 }
 
-/// Cycles beside each other: did the motion get better, and not only the loads' compliance?
+/// Returns the comparison of the cycles, which shows whether the motion itself improved and not
+/// only the compliance under the equivalent static loads.
 io::ReportSection cycles_section(const Scene& scene, const DesignResult& design) {
   io::ReportSection out;
   out.heading = "Cycles";
@@ -162,7 +164,7 @@ io::ReportSection cycles_section(const Scene& scene, const DesignResult& design)
   return out;
 }
 
-/// A drawing of every designed body in the run folder.
+/// Adds a drawing of every designed body from the run folder.
 void add_drawings(const DesignResult& design, const RunFolder& folder, const std::string& name,
                   io::ReportSection& out) {
   for (const mmc::BodyProblem& problem : design.problems)
@@ -171,7 +173,7 @@ void add_drawings(const DesignResult& design, const RunFolder& folder, const std
                                          ".svg"));
 }
 
-/// Cycles of the motion itself.
+/// Returns the section about corrected cycles.
 io::ReportSection corrections_section(const DesignResult& design, const RunFolder& folder) {
   io::ReportSection out;
   out.heading = "Cycles of the motion itself";
@@ -200,13 +202,13 @@ io::ReportSection certificate_section(const DesignResult& design, const RunFolde
   return out;
 }
 
-/// The report's sections in their order; pictures are written to plots/ as well.
+/// The sections of the report in their order; pictures are written to plots/, too.
 class Sections {
  public:
   Sections(bool plots, RunFolder& folder) : plots_(plots), folder_(folder) {}
 
   void add(io::ReportSection section) { all_.push_back(std::move(section)); }
-  /// Adds a picture, unless it is empty or the case wants none.
+  /// Adds a picture, unless it is empty or the case has `output.plots = false`.
   void add_plot(const std::string& name, const std::string& heading, std::string svg) {
     if (!plots_ || svg.empty()) return;
     folder_.write_text("plots/" + name + ".svg", svg);
@@ -282,7 +284,7 @@ void add_motion_pictures(const Scene& scene, const MotionResults& motions, Secti
 }  // namespace
 
 void write_report(const Scene& scene, const RunResult& result, RunFolder& folder) {
-  // "done" is written last: a run that says so has all its files.
+  // The status "done" is written last, so that a run with this status has all its files.
   const std::string& status = result.info.status;
   const bool done = status.starts_with("done");
   if (!done) folder.write_text("run.json", run_json(scene, result));

@@ -5,7 +5,7 @@
 
 namespace flexmorph::cases {
 
-/// Writes run.json, the plots and report.html.
+/// Writes run.json, the plots and report.html into the run folder.
 /// @throws Error (numerical) when a file cannot be written
 void write_report(const Scene& scene, const RunResult& result, RunFolder& folder);
 

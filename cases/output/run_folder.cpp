@@ -48,7 +48,7 @@ double RunFolder::take_output_seconds() { return output_seconds_.exchange(0); }
 
 void RunFolder::finish() {
   writer_.wait();
-  // Frames are pictures on the way, and many.
+  // Frames are left out because they are many and only intermediate pictures.
   for (const std::string& name : folder_.files())
     if (!name.starts_with("design/") && !name.starts_with("motion/"))
       io::sync_file(path() + "/" + name);
@@ -56,7 +56,7 @@ void RunFolder::finish() {
 
 namespace {
 
-/// A field with values of its own.
+/// A field that owns a copy of its values.
 struct OwnField {
   std::string name;
   std::vector<double> values;

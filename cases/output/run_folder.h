@@ -23,103 +23,121 @@
 
 namespace flexmorph::cases {
 
-/// "frame_00012.vti".
+/// Returns a file name with a number of at least five digits, such as "frame_00012.vti".
 std::string numbered(const std::string& stem, int number, const std::string& ending);
 
-/// Name of the file with the components of a body's result.
+/// Returns the name of the file with the components of the final design of a body.
 std::string components_name(const Scene& scene, const std::string& body);
 
-/// The folder of one run (cases/README.md, The run folder): every file is written here and nowhere
-/// else.
+/// The folder of one run (cases/README.md, The run folder). All files of the run are written into
+/// it.
 class RunFolder {
  public:
-  /// Takes the folder. A run that is in it already is moved, whole.
-  /// @param beside  files for ParaView are written by a thread of their own, while the run goes on
-  /// @throws Error (input) as io::OutputFolder: taken, or not a run's.
+  /// Mode of opening a folder: begin a new run, or continue the run in the folder.
   using Begin = io::OutputFolder::Begin;
+  /// Opens the folder. With Begin::anew an earlier run in the folder is moved as a whole.
+  /// @param path    path of the folder
+  /// @param scene   scene of the run; outlives the object
+  /// @param beside  true: files for ParaView are written by a separate thread while the run goes on
+  /// @throws Error (input) as io::OutputFolder: another process uses the folder, or it is no run
+  ///         folder.
   RunFolder(std::string path, const Scene& scene, bool beside = false, Begin begin = Begin::anew);
 
+  /// Returns the path of the folder.
   const std::string& path() const { return folder_.path(); }
-  /// Where the run is now that was here before; empty where there was none.
+  /// Returns the new path of an earlier run that was in the folder; empty if there was none.
   const std::string& moved_to() const { return folder_.moved_to(); }
-  /// Path of a file of the run, see io::OutputFolder::file().
+  /// Returns the path of a file of the run, see io::OutputFolder::file().
   std::string file(const std::string& name) { return folder_.file(name); }
-  /// Until all files are written and, but for frames for ParaView, on the disk (io::Sync).
-  /// @throws Error (numerical) naming the first file that is not.
+  /// Waits until all files are written and, except frames for ParaView, on the disk (io::Sync).
+  /// @throws Error (numerical) naming the first file that could not be written.
   void finish();
-  /// Paths of its files with this ending: of this run, and of the one it goes on with.
+  /// Returns the paths of the files with this ending, of this run and of the run that it continues.
   std::vector<std::string> files_of(const std::string& ending) { return folder_.files_of(ending); }
-  /// What became of frames for ParaView that could not be written, in words; nothing when all are.
+  /// Returns a message about frames for ParaView that could not be written; empty if all are
+  /// written.
   std::string lost_frames();
-  /// Exports that could not be made, in words; nothing when all are there.
+  /// Returns a message about exports that could not be made; empty if all exist.
   const std::string& missing_exports() const { return missing_; }
 
-  /// One design iteration: a row of history.csv, and the VTK files the scene asks for.
+  /// Writes one design iteration: a row of history.csv, and the VTK files that the scene requests.
   void add_iteration(const mmc::IterationReport& report);
-  /// Of a folder that is gone on with: is this row in its history, with all frames that belong to
-  /// it? It counts as written then. Rows are asked for in their order; the first one that is not
-  /// there ends those that are.
+  /// Returns true if the history of a continued run has this row and all frames that belong to it;
+  /// the row then counts as written. Rows must be requested in their order: after the first missing
+  /// row, all further rows are missing.
   bool has_row(const mmc::RowOfHistory& row);
-  /// CPU seconds spent on files since the last call; those of files that are written beside the run
-  /// when they are done.
+  /// Returns the CPU time spent on files since the last call [s]. Files that a separate thread
+  /// writes are counted when they are finished.
   double take_output_seconds();
 
-  /// loads/<body>.csv: one row per load set.
+  /// Writes loads/<body>.csv with one row per load set.
+  /// @param outcome  result of the design under these loads; null: its columns stay empty
   void write_loads(const std::string& body, const fem::EslSets& loads,
                    const mmc::BodyOutcome* outcome);
-  /// Writes loads/<domain>.csv of a plate at rest: one row per load case.
+  /// Writes loads/<domain>.csv of a static plate with one row per load case.
   void write_static_loads(const Domain& domain, std::span<const StaticLoad> loads);
-  /// A part of a frame of motion/motion.pvd, which has one file per part and time; the field `body`
-  /// is its number. The deformed body with the density of its design, displacements and strain
-  /// energy per area:
+  /// Writes a body with a design to a frame of motion/motion.pvd: the deformed body with the
+  /// density of its design, displacements and strain energy per area. A frame has one file per
+  /// body.
+  /// @param part  number of the body in the frame, written as the field `body`
   void add_motion_frame(const std::string& body, const DesignedSurface& surface, double time,
                         int part);
-  /// The deformed mid-surface of a body without a design, with displacements and strain energy per
-  /// area, a beam with its elastic strain:
+  /// Writes a body without a design to a frame of motion/motion.pvd: the deformed mid-surface with
+  /// displacements and strain energy per area, for a beam also with its elastic strain.
+  /// @param part  number of the body in the frame, written as the field `body`
   void add_surface_frame(const std::string& body, const Surface& surface, double time, int part);
-  /// What does not deform: rigid bodies, hubs, point masses.
+  /// Writes a rigid body, a hub or a point mass to a frame of motion/motion.pvd.
+  /// @param part  number of the body in the frame, written as the field `body`
   void add_rigid_frame(const std::string& name, const io::QuadMesh& mesh, double time, int part);
 
-  /// plots/start_<body>.svg: the layout before the first iteration.
+  /// Writes plots/start_<body>.svg, the layout before the first iteration.
   void write_start(const mmc::BodyProblem& problem);
-  /// Outlines, pictures and tables of a final design.
+  /// Writes outlines, pictures and tables of a final design.
   void write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome);
-  /// <name>.svg, of several designs <name>_<body>.svg: a design as it is now.
+  /// Writes the current outline of a design to <name>.svg; of several designs to <name>_<body>.svg.
   void keep_outline(const mmc::BodyProblem& problem, const std::string& name);
-  /// cycles.csv, anew: one row per cycle and body, then one per corrected cycle.
+  /// Writes all of cycles.csv: one row per cycle and body, then one row per corrected cycle.
   void write_cycles(std::span<const mmc::CycleVerdict> cycles,
                     std::span<const mmc::CorrectedCycle> corrected);
+  /// Writes a text file, which is on the disk when the function returns.
   void write_text(const std::string& name, const std::string& text);
 
-  /// What the iterations of all designs took, of earlier runs that this one goes on with too:
-  /// phases with their CPU seconds of all threads. Empty without designs.
+  /// Returns the CPU times of the phases of all design iterations, summed over all threads [s]. The
+  /// iterations of the run that this one continues are included. Empty without designs.
   const std::vector<std::pair<std::string, double>>& phases() const { return phases_; }
 
-  /// Rows of the history per body, for plots.
+  /// The history of the design of one body, for plots.
   struct History {
-    std::string body;
+    std::string body;  ///< Name of the designed body.
+
+    /// Values of every iteration: number of the row, compliance [J], volume fraction [-], KKT
+    /// residual [-]; and of crisp evaluations: number of the row, compliance of the crisp design
+    /// [J].
     std::vector<double> row, compliance, volume, kkt, sharp_row, sharp_compliance;
   };
+  /// Returns the histories of all designed bodies.
   const std::vector<History>& histories() const { return histories_; }
 
-  /// Outlines of the designs as SVG: where they start, and what came out so far.
+  /// Outlines of the design of one body as SVG.
   struct DesignPictures {
-    std::string body, start, result;
+    std::string body, start, result;  ///< Body; initial layout and latest result; empty: none.
   };
+  /// Returns the outlines of all designed bodies.
   const std::vector<DesignPictures>& design_pictures() const { return pictures_; }
 
-  /// What there is of the frames of a motion. Put back, their index is written anew.
+  /// Saves or restores the list of frames of a motion; when restored, their index is written again.
   void remember_frames(Memory& memory);
-  /// Files of these frames, as file() takes them.
+  /// Returns the names of the files of all frames of a motion, as for file().
   std::vector<std::string> frames() const;
 
-  /// Frames of the first body in space, for a picture: all up to a few, else some evenly spread.
+  /// Returns frames of the first body in space for a picture: all of them, or `most` equally spaced
+  /// ones if there are more.
   std::vector<io::SurfaceFrame> shapes(size_t most) const;
 
  private:
   History& history_of(const std::string& body);
   DesignPictures& pictures_of(const std::string& body);
-  /// A part of a frame of the motion: its fields, and when it is shown.
+  /// One body of a frame of the motion: its mesh, fields, time [s] and number.
   struct FramePart {
     const io::QuadMesh& mesh;
     std::vector<io::Field> cells, points;
@@ -127,7 +145,8 @@ class RunFolder {
     int number;
   };
   void write_part(const std::string& body, FramePart part);
-  /// Does the task, now or beside the run; a frame that cannot be written is counted.
+  /// Executes a task that writes a frame, at once or in the separate thread. Frames that cannot be
+  /// written are counted.
   void write_frame(std::function<void()> task);
   void begin_history(Begin begin);
   void keep_row(const mmc::RowOfHistory& row, const std::vector<std::string>& old);
@@ -140,7 +159,7 @@ class RunFolder {
   io::OutputFolder folder_;
   const Scene& scene_;
   std::unique_ptr<io::CsvWriter> history_;
-  /// An index of frames, listed as a file of the run with its first one.
+  /// An index of frames (.pvd), which is created with its first frame.
   class FrameIndex {
    public:
     FrameIndex(RunFolder& folder, std::string name) : folder_(folder), name_(std::move(name)) {}
@@ -152,7 +171,7 @@ class RunFolder {
     std::optional<io::Series> series_;
   };
   FrameIndex iterations_, components_, motion_;
-  /// A part of a frame of the motion that was written.
+  /// A written file of a frame of the motion: one body at one time [s].
   struct Frame {
     std::string file;
     double time = 0;
@@ -161,17 +180,17 @@ class RunFolder {
   };
   std::vector<Frame> frames_;
   std::string missing_;
-  int lost_frames_ = 0;  // of the writer, as the next
+  int lost_frames_ = 0;  // set by tasks of writer_, like why_lost_
   std::string why_lost_;
   std::vector<History> histories_;
-  std::deque<std::vector<std::string>> old_rows_;    // of a history that is gone on with
-  std::vector<std::vector<std::string>> kept_rows_;  // of these what stays
+  std::deque<std::vector<std::string>> old_rows_;    // remaining rows of a continued history
+  std::vector<std::vector<std::string>> kept_rows_;  // rows of a continued history that are kept
   std::vector<DesignPictures> pictures_;
   int rows_ = 0, motion_frames_ = 0;
   std::vector<io::SurfaceFrame> shapes_;
-  std::vector<std::pair<std::string, double>> phases_;  // CPU seconds of the history by phase
+  std::vector<std::pair<std::string, double>> phases_;  // name and CPU time [s]
   std::atomic<double> output_seconds_ = 0;
-  io::Background writer_;  // last: its tasks use the others
+  io::Background writer_;  // last member: its tasks use the others
 };
 
 }  // namespace flexmorph::cases

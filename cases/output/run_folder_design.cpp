@@ -7,16 +7,16 @@
 #include "io/plots.h"
 #include "optim/mmc/cycles/design_verification.h"
 
-/// Tables and pictures of designs and their loads.
+/// Members of RunFolder that write tables and pictures of designs and their loads.
 namespace flexmorph::cases {
 namespace {
 
-/// Tolerance of the picture of the first design [cells].
+/// Tolerance of the picture of the initial layout [cells].
 constexpr double kCoarse = 0.05;
 
 Box frame_of(const Grid& g) { return {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}; }
 
-/// Adds a place as a drawing shows it: a point, a line, a box or a circle.
+/// Adds the location of a support or load to a drawing: a point, a line, a box or a circle.
 void add_place(const Place& place, io::DrawingLayer& out) {
   const Vec2 &a = place.box.lower, &b = place.box.upper;
   if (place.kind == Place::Kind::disc)
@@ -29,7 +29,7 @@ void add_place(const Place& place, io::DrawingLayer& out) {
     out.rings.push_back(lines_of(corners_of(place.box)));
 }
 
-/// The domain, and where a plate at rest is held and pulled.
+/// Returns drawing layers with the domain and, for a static plate, its supports and loads.
 std::vector<io::DrawingLayer> drawn_besides(const Scene& scene, const mmc::BodyProblem& problem) {
   io::DrawingLayer domain{"DOMAIN"}, supports{"SUPPORTS"}, loads{"LOADS"};
   const std::vector<Region> region = {mmc::domain_of(problem)};
@@ -99,7 +99,7 @@ void RunFolder::write_start(const mmc::BodyProblem& problem) {
 }
 
 void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOutcome& outcome) {
-  writer_.wait();  // one picture at a time
+  writer_.wait();  // pictures are written one at a time
   const std::string stem = scene_.designs.size() > 1 ? "_" + problem.body : "";
   if (!problem.part)
     io::write_components_csv(folder_.file(components_name(scene_, problem.body)),
@@ -113,7 +113,7 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
   io::write_dxf(folder_.file("design" + stem + ".dxf"), curves, unit,
                 drawn_besides(scene_, problem));
   io::write_stl(folder_.file("design" + stem + ".stl"), regions, thickness, unit);
-  // An outline that touches itself is no solid: the other files have it.
+  // An outline that touches itself is no valid solid; the other files contain it nevertheless.
   const std::string name = "design" + stem + ".step";
   const std::string why = io::write_step(folder_.file(name), curves, thickness);
   if (!why.empty()) missing_ += name + " is not there: OpenCASCADE makes no solid of it: " + why;

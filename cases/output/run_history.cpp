@@ -10,7 +10,8 @@
 #include "geometry/cpu_time.h"
 #include "io/files.h"
 
-/// The history of a design: a row and perhaps frames per iteration; written, or gone on with.
+/// Members of RunFolder that write the history of designs, or continue the history of an earlier
+/// run: a row per iteration, and frames.
 namespace flexmorph::cases {
 namespace {
 
@@ -29,7 +30,7 @@ const std::vector<std::string> kHistoryColumns = {"body",
                                                   "sharp_volume",
                                                   "connected",
                                                   "min_feature"};
-/// Between these and what follows are the responses of further_rows().
+/// Last columns; the responses of further_rows() are between kHistoryColumns and these columns.
 const std::vector<std::string> kHistorySeconds = {
     "seconds_tdf",         "seconds_outlines",  "seconds_factor", "seconds_solve",
     "seconds_sensitivity", "seconds_optimizer", "seconds_output"};
@@ -41,14 +42,14 @@ std::vector<std::string> columns_of(const Scene& scene) {
   return out;
 }
 
-/// Of a cell of an old table; NaN where it is empty.
+/// Returns the value of a cell of a table that was read; NaN if the cell is empty.
 double value_of(const std::string& cell) {
   double value = std::numeric_limits<double>::quiet_NaN();
   std::from_chars(cell.data(), cell.data() + cell.size(), value);
   return value;
 }
 
-/// Names of the frames of a design, the n-th row of the history.
+/// Names of the frames of a design that belong to the n-th row of the history.
 struct FrameNames {
   std::string image, lines;
   FrameNames(const Scene& scene, const std::string& body, int n) {
@@ -103,7 +104,8 @@ bool RunFolder::has_row(const mmc::RowOfHistory& row) {
   return true;
 }
 
-/// From here on the run is another one, or files of it are missing: what follows is written anew.
+/// Discards the remaining rows of a continued history, because the run differs from here on or
+/// files are missing. The rows kept so far are written again.
 void RunFolder::forget_old_rows() {
   old_rows_.clear();
   history_ = std::make_unique<io::CsvWriter>(folder_.file("history.csv"), columns_of(scene_));
@@ -111,7 +113,7 @@ void RunFolder::forget_old_rows() {
     history_->row(std::vector<io::Cell>(kept.begin(), kept.end()));
 }
 
-/// As add_iteration(), from what the row says.
+/// Restores an iteration from its row, with the effects of add_iteration().
 void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::string>& old) {
   ++rows_;
   if (wants_frame(row.iteration))
@@ -136,18 +138,20 @@ void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::st
   }
 }
 
-/// VTK files of a design on its way.
+/// Writes the VTK files of an intermediate design.
 void RunFolder::write_design_frame(const mmc::IterationReport& r) {
   const double start = thread_seconds();
   const mmc::CellFactors& factors = r.state.factors();
-  // Σ w ½ uᵀ K_cell u: the derivative by the stiffness factor holds it. The energies of loads and
-  // of held growth are added; what they do on each other sums to zero over the cells.
+  // The weighted strain energy of a cell is Σ w ½ uᵀ K_cell u, and the derivative by its stiffness
+  // scale factor contains uᵀ K_cell u. The energies of the loads and of held thermal growth are
+  // added. Their mixed terms are left out because they sum to zero over the cells.
   VectorXd by_stiffness = -r.value.d_stiffness;
-  if (by_stiffness.size() == 0) by_stiffness.setZero(factors.stiffness.size());  // not solved
+  if (by_stiffness.size() == 0)
+    by_stiffness.setZero(factors.stiffness.size());  // the state was not solved
   if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
   VectorXd shown = r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
   output_seconds_ += thread_seconds() - start;
-  // Whatever is shown is copied: it is written while the next iteration goes on.
+  // All data are copied because a separate thread may write them during the next iteration.
   write_frame([this, names = FrameNames(scene_, r.problem.body, rows_), row = rows_,
                grid = r.problem.grid, mass = factors.mass, stiffness = factors.stiffness,
                energy = VectorXd(0.5 * by_stiffness.cwiseProduct(factors.stiffness)),

@@ -8,33 +8,35 @@
 #include "geometry/memory.h"
 #include "io/tables.h"
 
-/// What takes the steps of a motion or of a path of equilibria.
+/// Output of the steps of a motion or of a path of equilibria.
 namespace flexmorph::cases {
 
-/// A step of a motion or an equilibrium of a path, as its writers get it.
+/// A step of a motion or an equilibrium of a path, as it is passed to the writers.
 struct StepRecord {
-  fem::Workspace& model;        ///< prepared for x
-  const fem::State& x;          ///< state, with the multipliers that belong to it
-  std::span<const double> row;  ///< values of all columns of the table (n_columns)
-  double abscissa = 0;          ///< time of a motion [s], number of an equilibrium
-  double heating = 1;           ///< factor of the temperatures in a [static] analysis
-  bool stop = true;             ///< whether x is a state that was asked for: start, stop or end
+  fem::Workspace& model;        ///< Model, prepared for the state x.
+  const fem::State& x;          ///< State with its Lagrange multipliers.
+  std::span<const double> row;  ///< Values of all columns of the table (n_columns).
+  double abscissa = 0;          ///< Time of a motion [s], or number of an equilibrium.
+  double heating = 1;           ///< Factor of the temperature rises, in a [static] analysis.
+  bool stop = true;             ///< True if output at x was requested: start, stop or end.
 };
 
-/// Takes one step after the other. A writer asks for nothing but its record.
+/// Interface of writers, which receive the steps one after the other and use only their records.
 class StepWriter {
  public:
   virtual ~StepWriter() = default;
-  /// Takes the next step. @throws Error (numerical) when it cannot be written.
+  /// Writes the next step. @throws Error (numerical) when it cannot be written.
   virtual void add(const StepRecord& step) = 0;
-  /// Saves or restores what the writer holds between two steps.
+  /// Saves the data that the writer keeps between two steps to an archive, or restores them from
+  /// it.
   virtual void remember(Memory&) {}
 };
 
 /// Collects the rows in a table.
 class SeriesWriter : public StepWriter {
  public:
-  /// @param table  with its columns; outlives the writer
+  /// Prepares a writer that appends the rows to a table.
+  /// @param table  table whose columns are set; outlives the writer
   explicit SeriesWriter(Series& table) : table_(table) {}
   void add(const StepRecord& step) override { table_.add_row(step.row); }
   void remember(Memory& memory) override { memory(table_.values); }
@@ -43,14 +45,16 @@ class SeriesWriter : public StepWriter {
   Series& table_;
 };
 
-/// Writes a CSV file that grows with the motion: rows of a run that was killed are on the disk.
+/// Writes a CSV file row by row, so that the rows of a run that was killed are on the disk.
 class TableWriter : public StepWriter {
  public:
-  /// @param path   nothing is written before the first row
-  /// @param table  holds the rows so far when the motion is resumed; is restored before this writer
+  /// Prepares a writer; the file is created with the first row.
+  /// @param path   path of the file
+  /// @param table  table with the same columns; of a resumed motion it is restored before this
+  ///               writer and has all rows so far
   TableWriter(std::string path, const Series& table) : path_(std::move(path)), table_(table) {}
   void add(const StepRecord& step) override;
-  /// Restored, writes the rows of the table anew.
+  /// Writes all rows of the table again when the writer is restored; it saves nothing.
   void remember(Memory& memory) override;
 
  private:

@@ -10,7 +10,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Where the elements of a body meet, in material coordinates. Elements are numbered across first.
+/// Material coordinates of the lines between the elements of a body. Elements are numbered across
+/// first.
 struct Cuts {
   explicit Cuts(const fem::Body& body) : Cuts(body.element->lines()) {}
   explicit Cuts(std::array<std::vector<double>, 2> lines)
@@ -18,7 +19,7 @@ struct Cuts {
   std::vector<double> m, n;
 
   size_t element(size_t i, size_t j) const { return i * (n.size() - 1) + j; }
-  /// The element of a material point, the nearest one of a point beside them.
+  /// Returns the element that contains a material point, or the nearest element.
   size_t element_at(const Vec2& p) const { return element(interval(m, p.x()), interval(n, p.y())); }
 
  private:
@@ -28,7 +29,8 @@ struct Cuts {
   }
 };
 
-/// Material coordinates of the points along one direction.
+/// Returns the material coordinates of the points along one direction, `fine` intervals per
+/// element.
 std::vector<double> fine_lines(const std::vector<double>& lines, int fine) {
   std::vector<double> out;
   for (size_t i = 0; i + 1 < lines.size(); ++i)
@@ -38,7 +40,7 @@ std::vector<double> fine_lines(const std::vector<double>& lines, int fine) {
   return out;
 }
 
-/// Strain energy of every element over its area [J/m^2].
+/// Returns the strain energy of every element divided by its area [J/m^2].
 std::vector<double> energies(const fem::Body& body, const Cuts& cuts, const fem::State& x) {
   std::vector<double> out;
   fem::Local local;
@@ -146,7 +148,7 @@ io::QuadMesh disc_mesh(const fem::FrameMotion& frame, double radius, bool notche
   io::QuadMesh out;
   out.points = {frame.origin.x(), frame.origin.y()};
   for (int k = 0; k <= kSides; ++k) {
-    // From -x around to -x.
+    // The angle runs from -π to π: the first and the last point are at -x.
     const double angle = frame.angle + std::numbers::pi * (2.0 * k / kSides - 1);
     out.points.push_back(frame.origin.x() + radius * std::cos(angle));
     out.points.push_back(frame.origin.y() + radius * std::sin(angle));

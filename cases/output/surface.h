@@ -5,48 +5,60 @@
 
 namespace flexmorph::cases {
 
-/// The deformed mid-surface of a body, fine enough to look curved.
+/// The deformed mid-surface of a body, with several quads per element so that it looks curved.
 struct Surface {
-  io::QuadMesh mesh;                 ///< dimension: that of the body; points across, then along
-  int across = 0;                    ///< quads across
-  std::vector<double> displacement;  ///< per point, (dimension), see deformed_surface() [m]
-  std::vector<double> energy;  ///< per quad, strain energy per reference area [J/m^2]: the mean of
-                               ///< its element
-  std::vector<double> strain;  ///< per quad of a beam, elastic Green strain 11, 22, 12 [-] in its
-                               ///< middle: of F/s, s = 1 + α ΔT; none of plates
+  io::QuadMesh mesh;  ///< Mesh with the dimension of the body; points across first, then along.
+  int across = 0;     ///< Number of quads across.
+
+  /// Displacement of every point (dimension) [m], see deformed_surface().
+  std::vector<double> displacement;
+  /// Strain energy per reference area of every quad [J/m^2]; a quad has the mean of its element.
+  std::vector<double> energy;
+  /// Elastic Green strain 11, 22, 12 in the middle of every quad of a beam [-], computed from F/s
+  /// with s = 1 + α ΔT; empty for plates.
+  std::vector<double> strain;
 };
 
-/// @param row   how finely its elements are drawn, and whether with their strain
-/// @param pose  the displacement is counted from the undeformed body as it lies at the start;
-///              material that is not out of its hub then lies behind it
-/// @param x     the model of the body is prepared for it
-/// @param heating  what its temperature is multiplied by, in a [static] analysis
+/// Returns the deformed mid-surface of a body.
+/// @param row   row of its element: the number of quads, and whether strains are computed
+/// @param body  body of a model that is prepared for x
+/// @param x     state of the model
+/// @param pose  pose of the undeformed body at the start, to which displacements refer; material
+///              that is still inside the hub at the start then lies behind the hub
+/// @param heating  factor of the temperature rise, in a [static] analysis
 Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem::State& x,
                          const fem::ReferencePose& pose, double heating = 1);
 
-/// A deformed body in the plane, cell by cell of its design; what is still in the hub is left out.
-/// Points and quads across, then along, as in a Surface.
+/// A deformed body in the plane with one quad per cell of its design. Cells that are still inside
+/// the hub are left out. Points and quads are numbered across first, then along.
 struct DesignedSurface {
-  io::QuadMesh mesh;
-  std::vector<double> density;       ///< per quad [-]
-  std::vector<double> displacement;  ///< per point (2), as in a Surface [m]
-  std::vector<double> energy;        ///< per quad, as in a Surface [J/m^2]
+  io::QuadMesh mesh;                 ///< Mesh of the cells, in the plane.
+  std::vector<double> density;       ///< Mass scale factor of every quad [-].
+  std::vector<double> displacement;  ///< Displacement of every point (2) [m].
+  std::vector<double> energy;        ///< Strain energy per area of every quad [J/m^2].
 };
-/// @param pose     as of deformed_surface()
-/// @param density  of the cells of the grid
+/// Returns a deformed body with one quad per cell of its design.
+/// @param body     body of a model that is prepared for x
+/// @param x        state of the model
+/// @param pose     pose of the undeformed body at the start, to which displacements refer
+/// @param grid     grid of the design
+/// @param density  mass scale factors of the cells of the grid (n_cells)
 DesignedSurface designed_surface(const fem::Body& body, const fem::State& x,
                                  const fem::ReferencePose& pose, const Grid& grid,
                                  const VectorXd& density);
 
-/// A disc at a frame's origin; without the part around its -x, which shows how far it has turned,
-/// where it is notched.
+/// Returns a disc around the origin of a frame.
+/// @param notched  true: the sector around the direction -x is left out, which shows the angle
 io::QuadMesh disc_mesh(const fem::FrameMotion& frame, double radius, bool notched);
-/// How large hubs and point masses, which have no size, are drawn: a part of the width of what they
-/// carry, or of its length where that has none [m].
+/// Returns the radius with which a hub is drawn [m]: a fraction of the width of the bodies that it
+/// carries, or of their length if they have no width.
 double drawn_radius(const Scene& scene, const Hub& hub);
+/// Returns the radius with which a point mass is drawn [m]: a fraction of the width of its body, or
+/// of its length if it has no width.
 double drawn_radius(const Scene& scene, const PointMass& mass);
 
-/// Corners of the rectangle that a rigid body is drawn as, counterclockwise; none without a size.
+/// Returns the corners of the rectangle with which a rigid body is drawn, counterclockwise [m];
+/// empty if it has no size.
 std::vector<Vec2> drawn_corners(const RigidBody& body, const fem::Model& model,
                                 const fem::State& x);
 

@@ -11,15 +11,15 @@
 
 #include "geometry/base.h"
 
-extern "C" void* blas_memory_alloc(int purpose);  // of OpenBLAS, in no header
+extern "C" void* blas_memory_alloc(int purpose);  // part of OpenBLAS, declared in no header
 extern "C" void blas_memory_free(void* buffer);
 
 namespace flexmorph {
 namespace {
 
-constexpr double kStack = 8'388'608;  // of a thread, where nobody says otherwise
+constexpr double kStack = 8'388'608;  // default stack size of a thread [bytes]
 
-/// Would the system map so much?
+/// Returns true if the system can map this amount of memory.
 bool can_map(double bytes) {
   const auto size = static_cast<size_t>(bytes);
   void* trial = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -41,7 +41,7 @@ std::string limit_words() {
 }  // namespace
 
 void reserve_blas(int threads) {
-  static std::mutex mutex;  // buffers are those of the process
+  static std::mutex mutex;  // the buffers belong to the whole process
   static int reserved = 0;
   const std::lock_guard lock(mutex);
   if (threads <= reserved) return;
@@ -52,7 +52,7 @@ void reserve_blas(int threads) {
                        ", which this process cannot have: " + limit_words());
   std::vector<void*> buffers;
   for (int k = 0; k < threads; ++k) buffers.push_back(blas_memory_alloc(0));
-  for (void* buffer : buffers) blas_memory_free(buffer);  // they stay mapped
+  for (void* buffer : buffers) blas_memory_free(buffer);  // the buffers stay mapped
   if (threads > 1) {
 #pragma omp parallel num_threads(threads)
     {}

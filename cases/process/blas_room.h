@@ -2,17 +2,17 @@
 
 namespace flexmorph {
 
-/// Address space that OpenBLAS maps for every thread that is in it at the same time, at its first
-/// call, and keeps: BUFFER_SIZE of its x86_64 builds [bytes]; other processors take less. Memory is
+/// Address space that OpenBLAS maps for every concurrent thread at its first call and does not
+/// release: BUFFER_SIZE of its x86_64 builds [bytes]; it is smaller on other processors. Memory is
 /// used only where it is written to.
 inline constexpr double kBlasBuffer = 134'217'728;
 
-/// Maps these buffers now. OpenBLAS 0.3.21 that cannot have one asks for it again without end
-/// (driver/others/memory.c), which nobody but SIGKILL stops; a process whose address space is
-/// limited (ulimit -v) must know before. Threads of OpenMP begin here, too: that library ends the
-/// process where it cannot have one.
-/// @param threads  that will compute at the same time
-/// @throws Error (input) when there is no room for them, with the numbers.
+/// Maps the buffers of OpenBLAS (kBlasBuffer) and starts the threads of OpenMP now. If OpenBLAS
+/// 0.3.21 fails to map a buffer, it tries again in an endless loop (driver/others/memory.c) that
+/// only SIGKILL ends; therefore a limit of the address space (ulimit -v) must be detected before.
+/// The OpenMP library ends the process if it cannot start a thread.
+/// @param threads  number of threads that will compute at the same time
+/// @throws Error (input) with the sizes when the address space does not suffice.
 void reserve_blas(int threads);
 
 }  // namespace flexmorph

@@ -4,8 +4,9 @@
 
 namespace {
 
-/// True until the constructors of this object file have run. Libraries are constructed before the
-/// program that links to them, and destroyed after it.
+/// True until the constructors of this object file have run. The constructors of a library run
+/// before those of the program that is linked to it, and its destructors run after those of the
+/// program.
 bool loading = true;
 bool unloading = false;
 
@@ -16,7 +17,8 @@ struct Phases {
   ~Phases() { unloading = true; }
 } phases;
 
-/// The answer of MPI's profiling interface (MPI 4.1, section 15.2); no where no MPI is loaded.
+/// Returns the flag that a function of MPI's profiling interface (MPI 4.1, section 15.2) gives;
+/// false if no MPI is loaded.
 bool answer_of_mpi(const char* name) {
   auto* ask = reinterpret_cast<int (*)(int*)>(dlsym(RTLD_DEFAULT, name));
   int yes = 0;
@@ -26,9 +28,9 @@ bool answer_of_mpi(const char* name) {
 
 }  // namespace
 
-// Ipopt 3.14 with MUMPS for MPI calls MPI_Init while it is loaded unless MPI_Initialized says yes,
-// and MPI_Finalize while it is unloaded unless MPI_Finalized says yes. At every other time the two
-// answers are those of MPI.
+// While Ipopt 3.14 with MUMPS for MPI is loaded, it calls MPI_Init unless MPI_Initialized gives
+// true; while it is unloaded, it calls MPI_Finalize unless MPI_Finalized gives true. At all other
+// times both functions give the flags of MPI.
 extern "C" {
 
 __attribute__((visibility("default"))) int MPI_Initialized(int* flag) {

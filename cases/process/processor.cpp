@@ -23,7 +23,7 @@ std::string kernel_for_processor() {
 
 namespace {
 
-/// Leaves out the vectors that FLEXMORPH_VECTORS does not want.
+/// Excludes vectors that are wider than FLEXMORPH_VECTORS permits.
 void limit_vectors() {
   const char* said = std::getenv("FLEXMORPH_VECTORS");
   const std::string_view most = said ? said : "v4";
@@ -40,23 +40,23 @@ void limit_vectors() {
 void settle_processor(int threads, char** argv) {
   limit_vectors();
   keep_mpi_off_at_load();
-  const char* mark = "FLEXMORPH_THREADS";  // the second time around nothing is left to do
+  const char* mark = "FLEXMORPH_THREADS";  // set by the first execution of the process
   const std::string n = std::to_string(threads);
   const char* seen = std::getenv(mark);
   if (seen && n == seen) return;
   setenv(mark, n.c_str(), 1);
   setenv("OMP_THREAD_LIMIT", n.c_str(), 1);
   setenv("OMP_NUM_THREADS", n.c_str(), 1);
-  setenv("OMP_WAIT_POLICY", "passive", 0);  // motions have nothing for a second thread
+  setenv("OMP_WAIT_POLICY", "passive", 0);  // motions have no work for a second thread
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
   if (const std::string kernel = kernel_for_processor(); !kernel.empty())
     setenv("OPENBLAS_CORETYPE", kernel.c_str(), 0);
-  // Where Ipopt brings Open MPI: one process needs no network, and no memory shared with others.
+  // Settings for Open MPI, if Ipopt loads it: one process needs no network and no shared memory.
   setenv("OMPI_MCA_pml", "ob1", 0);
   setenv("OMPI_MCA_btl", "self", 0);
   setenv("OMPI_MCA_osc", "rdma", 0);
   setenv("OMPI_MCA_coll", "basic,self,libnbc,inter,tuned", 0);
-  execv("/proc/self/exe", argv);  // returns only on failure: then the library defaults stand
+  execv("/proc/self/exe", argv);  // returns only on failure; the libraries then use their defaults
 }
 
 }  // namespace flexmorph

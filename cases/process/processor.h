@@ -4,27 +4,29 @@
 
 namespace flexmorph {
 
-/// What a process computes with, decided here for every program of the repository, tests and
-/// benchmarks included: `threads` for our own loops over loads and cells, one for OpenBLAS (its own
-/// only slow down the small blocks of a factor), and the kernels of OpenBLAS,
-/// kernel_for_processor().
+/// Sets the number of threads and the kernels of the process, for every program of the repository,
+/// tests and benchmarks included: `threads` threads for the loops of Flexmorph over loads and
+/// cells, one thread for OpenBLAS (more only slow down the small blocks of a factorization), and
+/// the kernels kernel_for_processor() of OpenBLAS.
 ///
-/// FLEXMORPH_VECTORS=baseline or v3 in the environment leaves wider vectors out of our own kernels
-/// (geometry/vector_level.h).
+/// FLEXMORPH_VECTORS=baseline or v3 in the environment excludes wider vectors from the kernels of
+/// Flexmorph (geometry/vector_level.h); v4 is the default.
 ///
-/// Open MPI, where Ipopt brings it, neither looks for a network nor shares memory.
+/// Open MPI, if Ipopt loads it, neither searches a network nor shares memory.
 ///
-/// OpenMP and OpenBLAS read their wishes when they are loaded, so the process starts itself once
-/// more with them in its environment. What stands there already under OPENBLAS_CORETYPE,
-/// OMP_WAIT_POLICY and OMPI_MCA_* is left as it is.
-/// @throws Error (input) where FLEXMORPH_VECTORS is something else
-/// @param argv  as main() got it; first thing in main(), before anything that must not happen twice
+/// OpenMP and OpenBLAS read their environment variables when they are loaded; therefore the process
+/// executes itself a second time with these variables set. OPENBLAS_CORETYPE, OMP_WAIT_POLICY and
+/// OMPI_MCA_* are not changed if they are set already. The function must be called at the beginning
+/// of main(), before any action that must not be repeated.
+/// @param argv  arguments of main()
+/// @throws Error (input) if FLEXMORPH_VECTORS has another value
 void settle_processor(int threads, char** argv);
 
-/// Kernels of OpenBLAS that this processor gets unless OPENBLAS_CORETYPE says otherwise: "SkylakeX"
-/// (AVX-512), "Haswell" (AVX2 with FMA), or none, which leaves the choice to the library. It is not
-/// asked where it need not be: version 0.3.21 does not know newer processors, takes kernels of the
-/// year 2004 for them, and last bits differ between processors that could have the same.
+/// Returns the kernels of OpenBLAS for this processor unless OPENBLAS_CORETYPE gives others:
+/// "SkylakeX" (AVX-512), "Haswell" (AVX2 with FMA), or an empty text, which leaves the choice to
+/// the library. The choice of the library is avoided where possible: version 0.3.21 does not
+/// support newer processors and selects kernels of the year 2004 for them, and its results differ
+/// in the last bits between processors that could use equal kernels.
 std::string kernel_for_processor();
 
 }  // namespace flexmorph

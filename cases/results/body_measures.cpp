@@ -7,13 +7,13 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr int kDegree = 8;  // of the Gauss points that strains are looked for at: 5 per direction
+constexpr int kDegree = 8;  // degree of the quadrature for strains: 5 Gauss points per direction
 
 Vec2 place(const fem::Body& body, const fem::State& x, const Vec2& material) {
   return fem::point_position(body, x, material).head<2>();
 }
 
-/// How far b lies to the left of the line from a to c.
+/// Returns the signed distance of b from the line from a to c; it is positive on the left [m].
 double left_of(const Vec2& a, const Vec2& b, const Vec2& c) {
   const Vec2 along = (c - a).normalized(), d = b - a;
   return along.x() * d.y() - along.y() * d.x();
@@ -27,7 +27,8 @@ std::vector<fem::ShapeTable> gauss_points(const fem::Body& body) {
   return out;
 }
 
-/// Largest entry of (FᵀF/s² - 1)/2.
+/// Returns the largest absolute entry of the strain (FᵀF/s² - 1)/2 at the Gauss points.
+/// @param s  stretch that is removed from the deformation gradient F
 double largest_strain(const fem::Body& body, const fem::State& x, double s,
                       const std::vector<fem::ShapeTable>& tables) {
   const fem::VectorRows unknowns = fem::rows_of(body, x.q) / s;
@@ -35,7 +36,7 @@ double largest_strain(const fem::Body& body, const fem::State& x, double s,
   for (int e = 0; e < body.element->n_elements(); ++e) {
     const fem::ShapeTable& t = tables[static_cast<size_t>(e)];
     const MatrixXd q = unknowns(body.element->vectors(e), Eigen::all);
-    const MatrixXd r_x = t.N_m * q, r_y = t.N_n * q;  // a row per point
+    const MatrixXd r_x = t.N_m * q, r_y = t.N_n * q;  // one row per Gauss point
     for (Eigen::Index g = 0; g < r_x.rows(); ++g)
       for (const double strain :
            {0.5 * (r_x.row(g).squaredNorm() - 1), 0.5 * (r_y.row(g).squaredNorm() - 1),
@@ -45,7 +46,7 @@ double largest_strain(const fem::Body& body, const fem::State& x, double s,
   return largest;
 }
 
-/// Centre of mass in the axes of the undeformed body, and ∫ ρ |X - X_c|² dV about it.
+/// Returns the centre of mass X_c of the undeformed body [m] and ∫ ρ |X - X_c|² dV [kg m²].
 std::pair<Vec2, double> second_moment(const fem::Body& body,
                                       const std::vector<fem::ShapeTable>& tables) {
   const MatrixXd reference = body.element->reference();
@@ -114,7 +115,7 @@ struct HeatedState {
   double rise, elongation;
 };
 
-/// Values of the quantities that do not depend on the closed form of a free body.
+/// Appends the values of a quantity to a row. The quantity free_expansion is appended elsewhere.
 void append_quantity(const BodyMeasures::Measured& m, const std::string& quantity,
                      const HeatedState& at, std::vector<double>& row) {
   const fem::Body& body = at.body;
@@ -160,7 +161,7 @@ void BodyMeasures::append(const fem::Model& model, const fem::State& x, double h
                  {elongation * m.arm.x(), elongation * m.arm.y(), 0.5 * rate * rate * m.polar});
     }
   }
-  for (size_t i = first; i < row.size(); ++i) row[i] += 0.0;  // no "-0"
+  for (size_t i = first; i < row.size(); ++i) row[i] += 0.0;  // converts -0 to 0
 }
 
 }  // namespace flexmorph::cases

@@ -10,30 +10,34 @@
 
 namespace flexmorph::cases {
 
-/// Computes the quantities of the [[measure]] tables of a scene.
+/// The quantities of the [[measure]] tables of a scene, computed from states of its model.
 class BodyMeasures {
  public:
-  /// A measured body, with what does not change during a motion.
+  /// A measured body with its data that are constant during a motion.
   struct Measured {
-    const Measure* measure = nullptr;
-    size_t body = 0;                      // of the model
-    std::array<Vec2, 3> material;         // root, middle and free end of the axis
-    std::array<Vec2, 3> start;            // their places
-    double sag = 0;                       // deflection of the middle at the start
-    std::vector<fem::ShapeTable> tables;  // Gauss points, where strains are asked for
-    Vec2 arm{0, 0};                       // X - X_c of the free end
-    double polar = 0;                     // ∫ ρ |X - X_c|² dV
+    const Measure* measure = nullptr;  ///< The [[measure]] table of the body.
+    size_t body = 0;                   ///< Index of the body in the model.
+    std::array<Vec2, 3> material;      ///< Material points of the axis: root, middle, free end [m].
+    std::array<Vec2, 3> start;         ///< Positions of root, middle and free end at the start [m].
+    double sag = 0;                    ///< Deflection of the middle of the axis at the start [m].
+
+    /// Shape functions at the Gauss points, per element; empty if no quantity needs them.
+    std::vector<fem::ShapeTable> tables;
+
+    Vec2 arm{0, 0};  ///< Vector X - X_c from the centre of mass to the free end [m].
+    double polar = 0;  ///< Polar second moment ∫ ρ |X - X_c|² dV about the centre of mass [kg m²].
   };
 
   /// Describes the values in the order of append().
   static std::vector<ColumnInfo> columns(const Scene& scene);
 
-  /// @param model  built from the scene
-  /// @param start  undeformed state; displacements are counted from it
+  /// Finds the measured bodies and computes their constant data.
+  /// @param model  model built from the scene
+  /// @param start  undeformed state; displacements are measured from it
   BodyMeasures(const Scene& scene, const fem::Model& model, const fem::State& start);
 
   /// Appends the values of a state to a row.
-  /// @param heating  factor of the temperatures in a [static] analysis
+  /// @param heating  factor that multiplies the temperature rises, used by [static] analyses
   void append(const fem::Model& model, const fem::State& x, double heating,
               std::vector<double>& row) const;
 

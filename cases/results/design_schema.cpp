@@ -2,24 +2,24 @@
 
 #include "cases/results/schema.h"
 
-/// The numbers of designs in run.json.
+/// Tables of the numbers of designs in run.json.
 namespace flexmorph::cases {
 namespace {
 
-/// A width of an outline: infinite where nothing bounds it, unknown where outlines could not be
-/// united.
+/// Returns a width of an outline. It is infinite if nothing bounds it, and unknown if the outlines
+/// could not be united.
 Value width(const mmc::BodyOutcome& o, double Features::*which) {
   if (o.sharp.features) return (*o.sharp.features).*which;
   return nullptr;
 }
 
-/// Numbers that only a bounded compliance has.
+/// Returns a number that exists only if there is a verification with a finite compliance.
 template <class T>
 Value where_bounded(const VerifiedOutline& o, const T& value) {
   if (!o.verification || !std::isfinite(o.verification->compliance)) return {};
   return value(*o.verification);
 }
-/// Numbers that only a verification has.
+/// Returns a number that exists only if there is a verification.
 template <class T>
 Value where_verified(const VerifiedOutline& o, const T& value) {
   if (!o.verification) return {};

@@ -15,15 +15,15 @@ const std::string kLargest = ".largest", kLimit = "limit_load_";
 
 const std::string kAmplitude = "amplitude", kMotionRatio = "motion_ratio";
 
-/// The number of a value; nothing where it has none.
+/// Returns the number of a value; nothing if the value is not a number. An unknown width is 0.
 std::optional<double> number_of(const Value& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* number = std::get_if<int>(&value)) return *number;
-  if (std::holds_alternative<std::nullptr_t>(value)) return 0;  // outlines could not be united
+  if (std::holds_alternative<std::nullptr_t>(value)) return 0;  // the outlines could not be united
   return {};
 }
 
-/// Quantities of designs that are numbers and can be expected.
+/// Tells whether [expect] may contain this number of a design.
 bool can_be_expected(const Quantity<mmc::BodyOutcome>& q) {
   static const std::string kNames[] = {"compliance",   "volume",      "sharp_compliance",
                                        "sharp_volume", "islands",     "compliance_ratio",
@@ -31,7 +31,7 @@ bool can_be_expected(const Quantity<mmc::BodyOutcome>& q) {
   return std::find(std::begin(kNames), std::end(kNames), q.name) != std::end(kNames);
 }
 
-/// The number of a limit load of a path, from 1 on; 0 for other names.
+/// Returns the number n of a limit load from its name, "limit_load_n", n = 1..9; 0 for other names.
 size_t limit_number(const std::string& name) {
   const std::string digit = name.starts_with(kLimit) ? name.substr(kLimit.size()) : "";
   return digit.size() == 1 && digit[0] >= '1' && digit[0] <= '9'
@@ -44,7 +44,8 @@ std::optional<double> limit_of(const PathRecord& path, size_t number) {
   return number <= all.size() ? std::optional<double>(all[number - 1]) : std::nullopt;
 }
 
-/// The value of a column at the end, or with "<column>.largest" its largest absolute value.
+/// Returns the last value of a column, or for the name "<column>.largest" its largest absolute
+/// value; nothing if there is no such column.
 std::optional<double> value_of(const Series& table, const std::string& name) {
   if (const std::vector<double>* values = table.find(name))
     return values->empty() ? std::optional<double>() : values->back();
@@ -54,7 +55,7 @@ std::optional<double> value_of(const Series& table, const std::string& name) {
   return largest_size(*values);
 }
 
-/// A number of the first design of a run.
+/// Returns a number of the outcome of a design; nothing for an unknown name.
 std::optional<double> design_value(const mmc::BodyOutcome& o, const std::string& name) {
   for (const Quantity<mmc::BodyOutcome>& q : design_quantities())
     if (name == q.name && can_be_expected(q)) return number_of(q.value(o));
@@ -65,8 +66,9 @@ std::optional<double> design_value(const mmc::BodyOutcome& o, const std::string&
   return {};
 }
 
-/// A number of the motion that designs are assessed by; the energy balance is kept by the motion
-/// on the scene's mesh only.
+/// Returns a number of the motion by which designs are assessed; nothing for an unknown name. The
+/// error of the energy balance comes from the motion on the mesh of the scene, because only this
+/// motion computes it.
 std::optional<double> motion_value(const MotionResults& motions, const std::string& name) {
   if (const auto& assessed = motions.assessed(); assessed && !name.starts_with(kDefectColumn)) {
     const std::vector<size_t> tips = assessed->table.of_group(ColumnGroup::deflection);

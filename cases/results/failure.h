@@ -7,31 +7,33 @@
 
 namespace flexmorph::cases {
 
-/// Says where a run was when it failed.
+/// The state of a run when it failed: phase, body, time, iteration, and the cause.
 struct Failure {
-  std::string phase;                    ///< "motion", "design", "verification ..."; empty: unknown
-  std::string body;                     ///< that was designed
-  std::optional<double> time;           ///< last one that was reached [s]
-  std::optional<double> load_factor;    ///< of a path of equilibria, likewise
-  std::optional<int> step;              ///< number of steps or equilibria until there
-  std::optional<int> cycle, iteration;  ///< of the design
-  std::string kind;                     ///< "input", "numerical", "defect"
-  std::string cause;                    ///< the message
+  std::string phase;  ///< Phase: "motion", "design", "verification ..."; empty means unknown.
+  std::string body;   ///< Name of the body that was being designed.
+  std::optional<double> time;           ///< Last time that the motion reached [s].
+  std::optional<double> load_factor;    ///< Last load factor that the path reached [-].
+  std::optional<int> step;              ///< Number of steps or equilibria before the failure.
+  std::optional<int> cycle, iteration;  ///< Cycle and iteration of the design.
+  std::string kind;                     ///< Kind of the error: "input", "numerical", "defect".
+  std::string cause;                    ///< Message of the error.
 };
 
-/// An error that says where the run was.
+/// An error that contains the state of the run when it failed.
 class FailedRun : public Error {
  public:
+  /// Creates the error with the kind and the message of another one.
   FailedRun(const Error& error, Failure where)
       : Error(error.kind(), error.what()), where_(std::move(where)) {}
+  /// Returns the state of the run when it failed.
   const Failure& where() const { return where_; }
 
  private:
   Failure where_;
 };
 
-/// Describes an exception.
-/// @param here  where the run is, for exceptions that do not know
+/// Describes an exception and the state of the run in which it occurred.
+/// @param here  state of the run, for exceptions that do not contain it
 Failure failure_of(const std::exception& error, const Failure& here);
 
 }  // namespace flexmorph::cases

@@ -9,7 +9,7 @@ std::vector<double> limit_loads(std::span<const double> arc, std::span<const dou
     const double slope0 = (factor[i] - factor[i - 1]) / h0,
                  slope1 = (factor[i + 1] - factor[i]) / h1;
     if (!(slope0 * slope1 < 0)) continue;
-    // f + s x + c x^2 about the middle one, which turns at x = -s / (2 c).
+    // Parabola f + s x + c x^2 about the middle equilibrium; its extremum is at x = -s / (2 c).
     const double c = (slope1 - slope0) / (h0 + h1), s = (slope0 * h1 + slope1 * h0) / (h0 + h1);
     out.push_back(factor[i] - s * s / (4 * c));
   }

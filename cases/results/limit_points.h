@@ -3,14 +3,15 @@
 #include <span>
 #include <vector>
 
-/// Where the load on a path of equilibria turns.
+/// Limit points of a path of equilibria, at which the load factor has a local extremum.
 namespace flexmorph::cases {
 
-/// The load factors at which a path turns, in its order: of the parabola through the equilibrium
-/// whose load is the largest or smallest of its neighbours', and those, over the length of the
-/// path. Where the factor is a smooth function of that, it is off by the third power of the steps.
-/// @param arc     length of the path at every equilibrium, grows strictly
-/// @param factor  load factors there, as many
+/// Returns the load factors at the limit points of a path, in the order of the path. A limit load
+/// is the extremum of the parabola through three neighbouring equilibria, of which the middle one
+/// has the largest or the smallest load factor; the abscissa is the arc length. If the load factor
+/// is a smooth function of the arc length, the error is of third order in the steps.
+/// @param arc     arc length at every equilibrium (n), strictly increasing
+/// @param factor  load factor at every equilibrium (n)
 std::vector<double> limit_loads(std::span<const double> arc, std::span<const double> factor);
 
 }  // namespace flexmorph::cases

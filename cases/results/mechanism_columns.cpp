@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-/// The value nearest to another one that is the same angle.
+/// Returns the angle, plus a multiple of 2π, that is nearest to `near` [rad].
 double unwrapped(double angle, double near) { return near + std::remainder(angle - near, kTurn); }
 
 size_t index_of(const fem::Model& model, const std::string& joint) {
@@ -26,7 +26,7 @@ size_t index_of(const fem::Model& model, const std::string& joint) {
                              all.begin());
 }
 
-/// λ · ∂Φ/∂t.
+/// Returns the power λ · ∂Φ/∂t of a drive [W].
 double drive_power(const fem::Model& model, size_t joint, const fem::State& x) {
   fem::ConstraintRows rows;
   model.joints()[joint]->evaluate(x.t, x.q, x.v, rows);
@@ -139,7 +139,7 @@ void append_spring(const Scene& scene, const Spring& spring, fem::Workspace& mod
                                   [&](const auto& link) { return link->name() == spring.name; });
   VectorXd force = VectorXd::Zero(model.n_dofs());
   (*found)->add_force(x, force);
-  force = -force;  // links stand on the left side
+  force = -force;  // force elements are on the left-hand side of the equations of motion
   const Anchor at = completed(scene, spring.b, spring.a);
   const Vec2 about = model.place_motion({at.body, at.point, 0, {}}, x).position;
   const std::string& body = spring.b.on_ground() ? spring.a.body : spring.b.body;
@@ -176,11 +176,11 @@ void MechanismColumns::append(fem::Workspace& model, const fem::State& x,
   for (const WatchedHub& hub : hubs_) append_hub(hub, model, x, row);
   for (const Spring& spring : scene_.springs)
     if (spring.named) append_spring(scene_, spring, model, x, row);
-  for (size_t i = first; i < row.size(); ++i) row[i] += 0.0;  // no "-0"
+  for (size_t i = first; i < row.size(); ++i) row[i] += 0.0;  // converts -0 to 0
 }
 
 void MechanismColumns::remember(Memory& memory) {
-  for (fem::FrameMotion& frame : frames_) memory(frame.angle);  // all else is overwritten
+  for (fem::FrameMotion& frame : frames_) memory(frame.angle);  // append() overwrites the rest
   memory(turns_);
 }
 
@@ -189,7 +189,8 @@ void MechanismColumns::append_trajectory(double t, std::vector<double>& row) {
   while (scene_.rigid_bodies[i].name != scene_.trajectory->body) ++i;
   const fem::FrameMotion& frame = frames_[i];
   const double angle = path_[2](t).value;
-  // Whole turns between the two are a matter of how the case counts them.
+  // The angles that the case gives for body and trajectory may differ by whole turns, which are
+  // subtracted.
   if (!turns_) turns_ = kTurn * std::round((frame.angle - angle) / kTurn);
   row.insert(row.end(), {frame.origin.x() - path_[0](t).value, frame.origin.y() - path_[1](t).value,
                          frame.angle - angle - *turns_});

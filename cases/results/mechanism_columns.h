@@ -10,35 +10,37 @@
 
 namespace flexmorph::cases {
 
-/// Computes the columns that describe a mechanism in the table of a motion, and without powers in
-/// that of a [static] analysis; columns() says what each of them holds. Moments of joints are about
-/// the joint's point: that of body b, the driven one of point_drive; where b is the ground, the
-/// joint acts on its body a. Powers of drives are λ · ∂Φ/∂t.
+/// The columns that describe a mechanism in the table of a motion or of a [static] analysis; a
+/// static table has no powers. columns() describes each column. The moment of a joint is about the
+/// point of the joint: the point of body b, or the driven point of a point_drive. If b is the
+/// ground, force and moment are those on body a. The power of a drive is λ · ∂Φ/∂t.
 class MechanismColumns {
  public:
-  /// Tells whether all bodies move in the plane and none is held by the ground or a hub: forces
-  /// between bodies conserve their total momentum then.
+  /// Tells whether all bodies move in the plane and no joint or hub (a rigid frame with
+  /// prescribed motion) connects them to the ground. In this case the forces between the bodies
+  /// conserve their total momentum.
   static bool is_free(const Scene& scene);
 
+  /// Creates the columns of a scene; the scene has to outlive them.
   explicit MechanismColumns(const Scene& scene);
 
   /// Describes the values in the order of append().
   const std::vector<ColumnInfo>& columns() const { return columns_; }
   /// Appends the values of a state to a row.
-  /// @param x  state with the multipliers λ that belong to it
+  /// @param x  state, with its Lagrange multipliers λ
   void append(fem::Workspace& model, const fem::State& x, std::vector<double>& row);
-  /// Saves and restores the angles, which go on through half turns.
+  /// Saves or restores the unwrapped angles, which are continuous across ±π.
   void remember(Memory& memory);
 
  private:
-  /// A named joint: the body it acts on, and the place its moment is about.
+  /// A named joint and the point about which its moment is computed.
   struct Watched {
     const Joint* joint;
     Anchor about;
     bool driven;
   };
 
-  /// A hub and the joints that sit in it.
+  /// A hub and the joints that connect bodies to it.
   struct WatchedHub {
     fem::FrameDrive drive;
     std::vector<const Joint*> joints;
@@ -57,8 +59,8 @@ class MechanismColumns {
 
   const Scene& scene_;
   bool is_free_;
-  std::vector<fem::FrameMotion> frames_;  // of the rigid bodies, angles unwrapped
-  std::optional<double> turns_;           // of the trajectory's angle against the body's [rad]
+  std::vector<fem::FrameMotion> frames_;  // frames of the rigid bodies, with unwrapped angles
+  std::optional<double> turns_;  // whole turns between the angles of body and trajectory [rad]
   std::array<std::function<fem::Motion(double)>, 3> path_;
   std::vector<Watched> joints_;
   std::vector<WatchedHub> hubs_;

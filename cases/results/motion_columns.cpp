@@ -7,7 +7,7 @@ namespace flexmorph::cases {
 namespace {
 
 /// Describes a column per coordinate of every observed point.
-/// @param letter  "u" of displacements, "" of positions
+/// @param letter  letter in the column names: "u" for displacements, empty for positions
 void describe_points(const Scene& scene, const std::string& letter, const std::string& what,
                      std::vector<ColumnInfo>& out) {
   for (const Observe& o : scene.observed)
@@ -22,7 +22,7 @@ bool has_tip(const Scene& scene, const fem::Growth& growth) {
   return !scene.body(growth.body).in_space() && growth.line == 0;
 }
 
-/// The energy of a step that a term's column holds.
+/// Returns the energy of a step that belongs to the column of a term.
 double fem::MotionStep::*energy_of_term(const std::string& column) {
   if (column == "energy.dissipated") return &fem::MotionStep::dissipated;
   throw Error::input("no energy of a step is known for the column '" + column + "'");
@@ -106,7 +106,7 @@ void MotionColumns::describe_bodies(std::span<const fem::Growth> growths) {
   for (const fem::Growth& growth : growths) {
     const Body& body = scene_.body(growth.body);
     if (has_tip(scene_, growth)) deflecting_.push_back(&growth);
-    // A free root has a column for its material coordinate.
+    // A free root already has a column for its material coordinate, so it needs no length.
     if ((has_tip(scene_, growth) || body.flow) && !body.has_free_lines()) flowing_.push_back(&body);
   }
   for (const fem::Growth* growth : deflecting_)

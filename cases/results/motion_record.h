@@ -6,64 +6,66 @@
 #include "geometry/memory.h"
 #include "io/plane_frames.h"
 
-/// What a motion or a path of equilibria leaves behind.
+/// Results of a motion or of a path of equilibria.
 namespace flexmorph {
 
 namespace io {
-void remember(Memory& memory, PlaneFrame& frame);  ///< saves or restores a picture
+/// Saves or restores a picture of a mechanism.
+void remember(Memory& memory, PlaneFrame& frame);
 }  // namespace io
 
 namespace cases {
 
-/// Names of columns that code looks up.
+/// Names of the columns that the program reads from tables.
 inline constexpr const char *kTimeColumn = "time", *kKineticColumn = "energy.kinetic",
                             *kStrainColumn = "energy.strain",
                             *kPotentialColumn = "energy.potential",
                             *kDefectColumn = "energy.defect", *kFactorColumn = "load_factor";
-/// The end of the names of columns with tip deflections.
+/// Ending of the names of columns with tip deflections.
 inline const std::string kDeflectionEnding = ".tip_deflection";
-/// The end of the names of columns with deflections of observed points.
+/// Ending of the names of columns with deflections of observed points.
 inline const std::string kAcrossEnding = "_across";
 
 /// The result of a motion: a row per step, pictures, remarks on its start, and the counts of the
 /// time integration.
 struct MotionRecord {
-  Series table;                           ///< columns of MotionColumns
-  std::vector<io::PlaneFrame> snapshots;  ///< pictures of a mechanism
-  std::vector<std::string> remarks;  ///< sentences on the start, where it differs from the case
-  fem::MotionResult result;
+  Series table;                           ///< Table with the columns of MotionColumns.
+  std::vector<io::PlaneFrame> snapshots;  ///< Pictures of the mechanism.
+  std::vector<std::string> remarks;       ///< Remarks on a start that differs from the case.
+  fem::MotionResult result;               ///< Counts, drifts and events of the time integration.
 
+  /// Returns the times of the rows (n_rows) [s].
   const std::vector<double>& time() const { return table.at(kTimeColumn); }
-  /// ∫ U dt of the whole model by the trapezoidal rule [J s].
+  /// Returns the integral ∫ U dt of the strain energy of the model by the trapezoidal rule [J s].
   double strain_integral() const;
-  /// Largest |tip deflection| of a body [m]; nothing where the table has no such column.
+  /// Returns the largest |tip deflection| of a body [m]; nothing if the table has no such column.
   std::optional<double> amplitude(const std::string& body) const;
 };
 
-/// Says how a quantity varies over a motion.
+/// Statistics of a quantity over a motion.
 struct Variation {
-  double mean = 0;          ///< over time
-  double rms = 0;           ///< root mean square about the mean, over time
-  double peak_to_peak = 0;  ///< largest less smallest value
-  double largest = 0;       ///< largest size
+  double mean = 0;          ///< Mean over time.
+  double rms = 0;           ///< Root mean square about the mean, over time.
+  double peak_to_peak = 0;  ///< Difference of the largest and the smallest value.
+  double largest = 0;       ///< Largest absolute value.
 };
-/// Integrates over time by the trapezoidal rule.
-/// @param time    [s] (n), rising, at least two
-/// @param values  (n)
+/// Computes the statistics of a quantity; integrals over time use the trapezoidal rule.
+/// @param time    increasing times (n) [s], n >= 2
+/// @param values  values of the quantity (n)
 Variation variation_of(std::span<const double> time, std::span<const double> values);
 
-/// The result of a [static] analysis: a row per equilibrium.
+/// The result of a [static] analysis: a table with a row per equilibrium.
 struct PathRecord {
-  Series table;             ///< columns of path_columns()
-  std::vector<double> arc;  ///< length of the path in scaled displacements, per row [-]
-  fem::StaticResult result;
+  Series table;              ///< Table with the columns of path_columns().
+  std::vector<double> arc;   ///< Arc length of the path in scaled displacements (n_rows) [-].
+  fem::StaticResult result;  ///< Counts of the solver and last load factor.
 };
 
 /// The largest size of a column and the time at which it is reached [s].
 struct LargestError {
-  double size = 0, time = 0;
+  double size = 0, time = 0;  ///< Largest absolute value, and its time [s].
 };
-/// The largest |delta| of a trajectory's body over a motion.
+/// Returns the largest |delta| over a motion of the body that follows a trajectory.
 /// @param quantity  delta_x, delta_y [m] or delta_angle [rad]
 LargestError largest_error(const MotionRecord& motion, const std::string& body,
                            const std::string& quantity);

@@ -14,20 +14,20 @@ namespace {
 
 using Ring = std::vector<Vec2>;
 
-constexpr double kMissing = 0.01;  ///< part of a solid region that may be missing
+constexpr double kMissing = 0.01;  ///< Fraction of a solid region that may be missing [-].
 
 std::string point_words(const Vec2& p) {
   return "(" + io::to_text(p.x(), 4) + ", " + io::to_text(p.y(), 4) + ")";
 }
 
-/// Area of the part within a ring.
+/// Returns the area of the part within a ring [m²].
 double area_within(const mmc::BodyProblem& problem, const Ring& ring) {
   double out = 0;
   for (const Region& piece : *problem.part) out += area(unite({&ring, 1}, piece, {}));
   return out;
 }
 
-/// Area within a ring that can be material.
+/// Returns the area within a ring where material is allowed [m²].
 double allowed_within(const mmc::BodyProblem& problem, const Ring& ring) {
   return area(unite({&ring, 1}, mmc::domain_of(problem), problem.empty));
 }
@@ -43,7 +43,7 @@ void add_solid(const mmc::BodyProblem& problem, std::vector<std::string>& out) {
   }
 }
 
-/// Length of the borders of the part on a line.
+/// Returns the length of the boundary of the part that lies on a line [m].
 double length_on(const mmc::BodyProblem& problem, const Segment& line) {
   const double small = 1e-6 * problem.grid.dx();
   double out = 0;
@@ -63,7 +63,7 @@ void add_held(const mmc::BodyProblem& problem, std::vector<std::string>& out) {
                     point_words(line.b) + " m, which is held");
 }
 
-/// Places without a cell that has material of the part.
+/// Adds messages on supports and loads whose cells contain no material of the part.
 void add_places(const mmc::BodyProblem& problem, std::vector<std::string>& out) {
   const VectorXd fractions = mmc::part_fractions(problem, {});
   const std::vector<HeldOrLoaded> ends =
@@ -74,7 +74,7 @@ void add_places(const mmc::BodyProblem& problem, std::vector<std::string>& out) 
       out.push_back("no material is at " + place.name);
 }
 
-/// Points of a moving body that something is attached to, with its name.
+/// Returns the points of a moving body at which joints, masses or loads act, with their names.
 std::vector<std::pair<std::string, Vec2>> attached_points(const Scene& scene,
                                                           const std::string& body) {
   std::vector<std::pair<std::string, Vec2>> out;
@@ -88,7 +88,8 @@ std::vector<std::pair<std::string, Vec2>> attached_points(const Scene& scene,
   return out;
 }
 
-/// Points with no material in the cells around them, where material can be.
+/// Adds messages on points that have no material in the cells around them, although material is
+/// allowed there.
 void add_points(const Scene& scene, const mmc::BodyProblem& problem,
                 std::vector<std::string>& out) {
   const double reach = mmc::point_reach(problem);

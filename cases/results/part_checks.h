@@ -8,14 +8,15 @@
 
 namespace flexmorph::cases {
 
-/// Sentences on the material that a part lacks where its body is held, carries something or is
-/// solid in the case: solid regions of which more than 1 % is missing, lines and places of supports
-/// and loads, and points of joints, masses and forces without any. Empty where nothing is missing,
+/// Returns messages on missing material of a part. They name solid regions of the case of which
+/// more than 1 % is missing; lines and regions of supports and loads that no material reaches; and
+/// points of joints, masses and forces without material. The list is empty if nothing is missing,
 /// and for a problem without a part.
 std::vector<std::string> missing_material(const Scene& scene, const mmc::BodyProblem& problem);
 
-/// Sentences on the motion that verifies parts where it is not one of their cells: a plate at rest,
-/// heat, space, or another [verify]. Empty where parts move on cells, and without parts.
+/// Returns messages on the verification of parts if it has no motion on cells, because the plate is
+/// static, has heat, moves in space, or has another [verify]. The list is empty if the parts move
+/// on cells, and if there are no parts.
 std::vector<std::string> motion_notes(const Scene& scene);
 
 }  // namespace flexmorph::cases

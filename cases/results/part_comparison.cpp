@@ -12,7 +12,7 @@ namespace {
 
 using Number = std::optional<double>;
 
-/// A body of a result with all that is known of it.
+/// A view of one body of a result.
 struct BodyView {
   const RunResult& result;
   size_t i;
@@ -25,10 +25,10 @@ struct BodyView {
   }
 };
 
-/// A number that is finite, or none.
+/// Returns a number if it is finite, else nothing.
 Number finite(double value) { return std::isfinite(value) ? Number(value) : std::nullopt; }
 
-/// One row of the table of numbers of a body.
+/// A row of the table of numbers of a body: name, unit, meaning and accessors.
 struct Row {
   const char *name, *unit, *words;
   Number (*value)(const BodyView&);
@@ -82,7 +82,7 @@ constexpr Row kRows[] = {
     {"pieces", "-", "pieces of material",
      [](const BodyView& v) -> Number { return 1.0 + v.outcome().sharp.connectivity.islands; }}};
 
-/// How a column varies over a motion.
+/// Returns the statistics of a column of a motion; nothing if there is no such motion or column.
 std::optional<Variation> variation(const std::optional<MotionRecord>& motion,
                                    const std::string& column) {
   const std::vector<double>* values = motion ? motion->table.find(column) : nullptr;
@@ -90,12 +90,12 @@ std::optional<Variation> variation(const std::optional<MotionRecord>& motion,
   return variation_of(motion->time(), *values);
 }
 
-/// A column with the deflections of a point, and the point in words.
+/// A column with the deflections of a point, and the name of the point in messages.
 struct Deflection {
   std::string body, column, point;
 };
 
-/// Largest deflection of a column and its root mean square about the mean.
+/// Adds the largest deflection of a point and its root mean square about the mean.
 void add_deflections(const Deflection& of_point, const RunResult& parts, const RunResult* design,
                      std::vector<ComparedNumber>& out) {
   const auto& [body, column, point] = of_point;
@@ -115,7 +115,7 @@ void add_deflections(const Deflection& of_point, const RunResult& parts, const R
   add(".rms", "deflection of " + point + ", root mean square about its mean", &Variation::rms);
 }
 
-/// Deflections of the tip and of observed points of a body.
+/// Adds the deflections of the tip and of the observed points of a body.
 void add_motion(const std::string& body, const RunResult& parts, const RunResult* design,
                 std::vector<ComparedNumber>& out) {
   if (!parts.motions.assessed()) return;

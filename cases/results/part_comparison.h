@@ -9,30 +9,30 @@ namespace flexmorph::cases {
 struct RunResult;
 struct Scene;
 
-/// A number of parts, beside that of the design and that of uniform material.
+/// A number of the parts, with the same number of the design and of uniform material.
 struct ComparedNumber {
-  std::string body;  ///< empty: of all bodies together
-  std::string name;  ///< as in run.json where it is there
-  std::string unit, words;
-  std::optional<double> part, design, uniform;
+  std::string body;         ///< Name of the body; empty means all bodies together.
+  std::string name;         ///< Name of the number, as in run.json if it is there.
+  std::string unit, words;  ///< Unit, and meaning of the number as text.
+  std::optional<double> part, design, uniform;  ///< Values; absent if they were not computed.
 };
 
-/// Numbers of verified parts beside those of the design of a run, found in the same way, and of
-/// uniform material.
+/// Numbers of verified parts, compared with numbers of the design of a run, which are computed in
+/// the same way, and with numbers of uniform material.
 struct PartComparison {
-  std::vector<std::pair<std::string, std::string>> files;  ///< of parts: body, path
-  std::string design;              ///< folder of the run with the design; empty: there is none
-  std::vector<std::string> notes;  ///< sentences on what the numbers are not
-  std::vector<ComparedNumber> numbers;
+  std::vector<std::pair<std::string, std::string>> files;  ///< Body and file path of every part.
+  std::string design;                   ///< Folder of the run with the design; empty: no design.
+  std::vector<std::string> notes;       ///< Messages on the limitations of the numbers.
+  std::vector<ComparedNumber> numbers;  ///< The compared numbers.
 };
 
-/// Returns mass, compliances, stress, deflections, widths and measures of the motion of a result
-/// with parts.
-/// @param design  of the evaluated design; null: none is compared
+/// Returns mass, volume fraction, compliances, stress, deflections, widths and strain energy
+/// integral of a result with parts.
+/// @param design  result of the evaluated design; null means that no design is compared
 std::vector<ComparedNumber> compared_numbers(const Scene& scene, const RunResult& parts,
                                              const RunResult* design);
 
-/// Returns a header and a row per number, with the part's differences in per cent.
+/// Returns a header and a row per number, with the differences of the part in per cent.
 std::vector<std::vector<std::string>> comparison_rows(const PartComparison& comparison);
 
 }  // namespace flexmorph::cases

@@ -9,7 +9,8 @@ namespace {
 const std::vector<std::string> kFigures = {"compliance", "volume", "sharp_compliance",
                                            "sharp_volume", "uniform_compliance"};
 
-/// Names of the columns that say something about a scene rather than about its solution.
+/// Returns the names of the columns that can be quantities of interest. Abscissas, numbers of the
+/// solver, lengths and powers are left out.
 std::vector<std::string> names_of(const std::vector<ColumnInfo>& columns) {
   std::vector<std::string> out;
   for (const ColumnInfo& c : columns)

@@ -5,22 +5,24 @@
 
 #include "cases/assembly/prepared_case.h"
 
-/// Numbers that a run of a scene comes to, by name: what expectations and accuracy may ask for.
+/// Names of the numbers that a run of a scene computes. Expectations and accuracy studies refer to
+/// numbers by these names.
 namespace flexmorph::cases {
 
-/// What a case is measured in: its motion (or path of equilibria) with full material, and its
-/// designs as they start.
+/// A subproblem of a case whose numbers are measured: its motion (or path of equilibria) with full
+/// material, or its designs at their start.
 enum class Part { motion, design };
+/// Returns the name of a subproblem: "motion" or "design".
 std::string to_string(Part part);
 
-/// Parts that a scene has.
+/// Returns the subproblems that a scene has.
 std::vector<Part> parts_of(const Scene& scene);
 
-/// Names of quantities that a scene offers: columns of motion.csv or path.csv, and figures of
-/// designs. Numbers of run.json ("motion.energy_defect") come on top of them.
+/// Returns the names of the quantities of a scene in a subproblem: columns of motion.csv or
+/// path.csv, or results of designs. Numbers of run.json ("motion.energy_defect") are not listed.
 std::vector<std::string> candidates(const PreparedCase& prepared, Part part);
 
-/// "there are: ..." for messages.
+/// Returns the names of all quantities of a scene as a list for messages, separated by commas.
 std::string all_candidates(const PreparedCase& prepared);
 
 }  // namespace flexmorph::cases

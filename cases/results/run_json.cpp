@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Adds the quantities of a table that the source has.
+/// Adds the numbers of a table that exist for the source.
 template <class Source>
 void add(Json& out, std::span<const Quantity<Source>> table, const Source& source) {
   for (const Quantity<Source>& q : table)
@@ -31,7 +31,7 @@ Json object_of(std::span<const Quantity<Source>> table, const Source& source) {
   return out;
 }
 
-/// Thinnest half-thickness of any component anywhere along its axis [m].
+/// Returns the smallest half-thickness of all components along their axes [m].
 double thinnest(const mmc::BodyProblem& problem) {
   double out = problem.grid.width;
   for (const Component& c : problem.design.components())
@@ -42,7 +42,8 @@ double thinnest(const mmc::BodyProblem& problem) {
   return out;
 }
 
-/// What the column `scaled_objective` of history.csv holds: the objective as optimizers see it.
+/// Returns the meaning of the column `scaled_objective` of history.csv, which is the objective in
+/// the form that is passed to optimizers.
 std::string objective_words(const mmc::BodyProblem& p) {
   const mmc::ResponseRow& row = *p.goal.objective;
   const std::string of = std::string(row.words).append(" [").append(row.unit).append("]");
@@ -58,7 +59,7 @@ Json outline_results(const VerifiedOutline& outline, double crisp_compliance) {
   out["cells_over_this"] = crisp_compliance / v.compliance - 1;
   out["largest_stress_at"] = {v.largest_at.x(), v.largest_at.y()};
   if (!v.mesh_loads.empty()) {
-    Json exported = Json::object();  // the first load of design.inp
+    Json exported = Json::object();  // results of the first load of design.inp
     exported["load"] = v.mesh_loads.front().load + 1;
     exported["compliance"] = v.mesh_loads.front().compliance;
     exported["largest_stress"] = v.shown_stress.value;
@@ -68,7 +69,7 @@ Json outline_results(const VerifiedOutline& outline, double crisp_compliance) {
   return out;
 }
 
-/// Largest tip deflections of a body: a link between two pins has none.
+/// Adds the largest tip deflections of a body; they are null for a body between two pins.
 void add_amplitudes(Json& out, const MotionResults& motions, const std::string& body) {
   const auto amplitude = [&](const std::optional<MotionRecord>& motion) {
     const std::optional<double> found = motion ? motion->amplitude(body) : std::nullopt;
@@ -105,7 +106,7 @@ Json body_results(const RunResult& result, size_t i) {
     if (d.body == o.body) out["load_difference"] = object_of(load_difference_quantities(), d);
   if (!o.of_part) out["scaled_objective"] = objective_words(design.problems[i]);
   out["cycles"] = design.cycles;
-  Json active = Json::array();  // loads within 1 % of the worst, from 1
+  Json active = Json::array();  // numbers (from 1) of loads within 1 % of the largest compliance
   for (size_t l = 0; l < o.load_compliances.size(); ++l)
     if (o.load_compliances[l] >= 0.99 * o.worst_compliance)
       active.push_back(static_cast<int>(l + 1));
@@ -114,7 +115,7 @@ Json body_results(const RunResult& result, size_t i) {
   return out;
 }
 
-/// Last values of the columns of a group, by their names.
+/// Returns the last values of the columns of a group, by their names.
 Json last_values(const Series& table, ColumnGroup group) {
   Json out = Json::object();
   for (const size_t c : table.of_group(group))
@@ -122,7 +123,7 @@ Json last_values(const Series& table, ColumnGroup group) {
   return out;
 }
 
-/// Adds the last values of observed points and measured quantities, where there are such columns.
+/// Adds the last values of observed points and measured quantities if there are such columns.
 void add_last_values(Json& out, const Series& table) {
   if (!table.of_group(ColumnGroup::observed).empty())
     out["observed"] = last_values(table, ColumnGroup::observed);
@@ -139,7 +140,7 @@ Json path_results(const PathRecord& path) {
   return out;
 }
 
-/// Largest deviations of the trajectory's body from its path, and their times.
+/// Returns the largest deviations of a body from its trajectory, and their times.
 Json trajectory_errors(const Scene& scene, const MotionResults& motions) {
   const std::string& body = scene.trajectory->body;
   Json out = Json::object();
@@ -236,7 +237,8 @@ Json heat_results(const Scene& scene) {
   return out;
 }
 
-/// What bodies with one budget take of it, if there are such.
+/// Returns the used and the allowed mass of the bodies that share a mass limit; nothing if no
+/// bodies share mass.
 std::optional<Json> shared_mass(const DesignResult& design) {
   double used = 0, allowed = 0;
   for (size_t i = 0; i < design.outcomes.size(); ++i) {
@@ -269,7 +271,7 @@ Json failure_results(const Failure& f) {
   return out;
 }
 
-/// Version, libraries, status and times of a run.
+/// Returns version, libraries, status and times of a run.
 Json info_results(const Scene& scene, const RunResult& result) {
   const RunInfo& info = result.info;
   Json out = Json::object();

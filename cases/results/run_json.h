@@ -7,9 +7,9 @@
 
 namespace flexmorph::cases {
 
-/// Writes a result as the text of run.json (cases/README.md, The run folder).
+/// Returns a result as the text of run.json (cases/README.md, The run folder).
 std::string run_json(const Scene& scene, const RunResult& result);
-/// Writes a certificate as the text that stands in run.json under "certificate".
+/// Returns a certificate as the text of the entry "certificate" of run.json.
 std::string certificate_json(const mmc::MotionCertificate& certificate);
 
 }  // namespace flexmorph::cases

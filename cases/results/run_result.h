@@ -12,110 +12,129 @@
 #include "optim/mmc/cycles/corrected_cycles.h"
 #include "optim/mmc/cycles/esl_loop.h"
 
-/// What a run found. Drivers return its parts; once it is complete it is const.
+/// The results of a run. The stages of a run return components of it, and the complete result is
+/// passed as const.
 namespace flexmorph::cases {
 
 /// Objective of the crisp outlines on the cells of the case before and after corrected cycles.
 struct CorrectedMotion {
-  double before = 0, after = 0;
+  double before = 0, after = 0;  ///< Objective before and after, in the unit of the objective.
+
+  /// Tells whether the objective is smaller after the corrected cycles.
   bool improves() const { return after < before; }
 };
 
-/// What a sentence of a run says against its own results.
+/// A warning of a run about its own results.
 struct Warning {
-  std::string words;
-  bool unusable = false;  ///< nobody can use the result: the run ends "done, not usable"
+  std::string words;      ///< Text of the warning.
+  bool unusable = false;  ///< True if the result is not usable; the status says so then.
 };
 
-/// An expectation of the case and what was found.
+/// An expectation of the case, compared with the result.
 struct Expected {
-  std::string name;
-  std::optional<double> found;  ///< nothing where the run did not get that far
-  bool holds = false;
-  std::string words;  ///< "volume = 0.52: expected at most 0.5001"
+  std::string name;             ///< Name of the number.
+  std::optional<double> found;  ///< Value in the result; absent if it was not computed.
+  bool holds = false;           ///< True if the value satisfies the expectation.
+  std::string words;            ///< Message: "volume = 0.52: expected at most 0.5001".
 };
 
-/// CPU seconds of parts of a run, by name.
+/// CPU times of the phases of a run, by name [s].
 using Seconds = std::vector<std::pair<std::string, double>>;
 
-/// How a run went.
+/// The general information on a run: status, messages, times and memory.
 struct RunInfo {
-  std::string status = "running", message;
-  std::string lost_frames;      ///< sentence on frames that could not be written; mostly empty
-  std::string missing_exports;  ///< sentence on files that could not be made; mostly empty
-  int threads = 1;
+  std::string status = "running", message;  ///< Status, and message of an error.
+  std::string lost_frames;      ///< Message on frames that could not be written; often empty.
+  std::string missing_exports;  ///< Message on exports that could not be made; often empty.
+  int threads = 1;              ///< Number of motions computed at the same time.
+
+  /// Wall time [s], CPU time [s] and peak memory [bytes] of the process.
   double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
-  Seconds phases;  ///< CPU seconds of a run with designs
+
+  Seconds phases;  ///< CPU times of the phases of a run with designs [s].
 };
 
-/// The designs of a run and what is known of them.
+/// The designs of a run and the results about them.
 struct DesignResult {
-  std::vector<mmc::BodyProblem> problems;
-  std::vector<mmc::BodyOutcome> outcomes;
-  std::vector<VerifiedOutline> outlines;         ///< of final designs, in the order of the outcomes
-  std::vector<StaticLoad> static_loads;          ///< of the final design of a plate at rest
-  std::vector<mmc::CycleVerdict> verdicts;       ///< of a run of several cycles
-  std::vector<mmc::CorrectedCycle> corrections;  ///< the design they begin with, then every cycle
-  std::optional<CorrectedMotion> corrected;
-  std::optional<mmc::MotionCertificate> certificate;
-  /// How far the loads of the designs are from those of the motion with them.
+  std::vector<mmc::BodyProblem> problems;   ///< Design problems of the bodies, with their designs.
+  std::vector<mmc::BodyOutcome> outcomes;   ///< Outcomes of the designs, one per body.
+  std::vector<VerifiedOutline> outlines;    ///< Verified outlines, in the order of the outcomes.
+  std::vector<StaticLoad> static_loads;     ///< Load cases of the final design of a static plate.
+  std::vector<mmc::CycleVerdict> verdicts;  ///< Assessments of cycles of a run with several.
+
+  /// Corrected cycles; the first entry is the design before the corrections.
+  std::vector<mmc::CorrectedCycle> corrections;
+
+  std::optional<CorrectedMotion> corrected;           ///< Objective before and after correction.
+  std::optional<mmc::MotionCertificate> certificate;  ///< Optimality certificate of the designs.
+
+  /// Differences between the loads of the designs and the loads of the motion with the designs.
   std::vector<mmc::LoadDifference> load_differences;
-  int cycles = 0;
-  /// CPU seconds: post-processing of designs; motions that make loads; motions with final designs
-  /// and with uniform material.
+
+  int cycles = 0;  ///< Number of design cycles.
+
+  /// CPU times [s] of the post-processing of designs; of the motions that supply loads; of the
+  /// motions with final designs and with uniform material.
   double seconds_idle = 0, seconds_motion = 0, seconds_verification = 0;
 };
 
-/// The motions of a run: with the design (or full material), with uniform material of the same
-/// volume, and both on the mesh of [verify].
+/// The motions of a run: the motion with the design (or with full material), the motion with
+/// uniform material of the same volume, and both motions on the mesh of [verify].
 struct MotionResults {
+  /// The motion with the design and with uniform material, on the mesh of the scene and of
+  /// [verify].
   std::optional<MotionRecord> motion, uniform, verified, verified_uniform;
 
-  /// The motion that a design is assessed by: the verification where there is one.
+  /// Returns the motion by which a design is assessed: the verification if there is one.
   const std::optional<MotionRecord>& assessed() const { return verified ? verified : motion; }
+  /// Returns the motion with uniform material that is compared with assessed().
   const std::optional<MotionRecord>& assessed_uniform() const {
     return verified ? verified_uniform : uniform;
   }
 };
 
-/// How a point of a designed body deflects in its motion, and with uniform material.
+/// Statistics of the deflection of a point of a designed body, with the design and with uniform
+/// material.
 struct PointVariation {
-  std::string name;  ///< of the observed point; empty: the tip
-  Variation designed, uniform;
+  std::string name;             ///< Name of the observed point; empty means the tip.
+  Variation designed, uniform;  ///< Statistics with the design, and with uniform material [m].
 
-  /// Parts of uniform material's that a design is warned of from.
+  /// Ratio to the deflection with uniform material above which a design causes a warning [-].
   static constexpr double kLargestRatio = 1.05;
+
+  /// Returns the ratio of the root mean squares of design and uniform material.
   double rms_ratio() const { return designed.rms / uniform.rms; }
+  /// Returns the ratio of the peak-to-peak values of design and uniform material.
   double peak_to_peak_ratio() const { return designed.peak_to_peak / uniform.peak_to_peak; }
   /// Tells whether the point of the design moves by more than rounding errors do.
   bool moves() const { return designed.peak_to_peak > 1e-9 * designed.largest; }
 };
-/// Returns the variation of the tip deflection of a body in the motions that designs are assessed
-/// by; nothing where the body has no tip, or one of the motions is missing.
+/// Returns the statistics of the tip deflection of a body in the motions by which designs are
+/// assessed; nothing if the body has no tip, or if one of the motions is missing.
 std::optional<PointVariation> tip_variation(const MotionResults& motions, const std::string& body);
-/// Variations of the deflections of the observed points of a designed body in the motions that
-/// designs are assessed by; none where one of the motions is missing.
+/// Returns the statistics of the deflections of the observed points of a designed body in the
+/// motions by which designs are assessed; none if one of the motions is missing.
 std::vector<PointVariation> point_variations(const MotionResults& motions, const std::string& body);
 
-/// Everything a run knows at its end, or when it fails.
+/// All results of a run at its end, or at its failure.
 struct RunResult {
-  RunInfo info;
-  DesignResult design;
-  MotionResults motions;
-  std::optional<PathRecord> path;            ///< of a [static] analysis
-  std::optional<PartComparison> comparison;  ///< of the command `verify`
-  std::optional<Failure> failure;
-  std::vector<Warning> warnings;
-  std::vector<Expected> expectations;
+  RunInfo info;                              ///< Status, times and memory.
+  DesignResult design;                       ///< Designs; empty if the case has none.
+  MotionResults motions;                     ///< Motions; absent if the case has none.
+  std::optional<PathRecord> path;            ///< Path of equilibria of a [static] analysis.
+  std::optional<PartComparison> comparison;  ///< Comparison of parts, of the command `verify`.
+  std::optional<Failure> failure;            ///< State of the run when it failed.
+  std::vector<Warning> warnings;             ///< Warnings about the results.
+  std::vector<Expected> expectations;        ///< Expectations of the case, compared.
 };
 
-/// The result of a run that may have ended early: what was computed, and why it ended.
+/// The result of a run that may have ended early: the computed results, and the reason of the end.
 struct EndedRun {
-  RunResult result;
-  std::exception_ptr error;  ///< null where the run came to its end; else Error or Interrupted
+  RunResult result;          ///< Results that were computed before the end.
+  std::exception_ptr error;  ///< Error or Interrupted; null if the run is complete.
 };
 
-/// Thrown when the user interrupts a run.
+/// The exception that is thrown when the user interrupts a run.
 struct Interrupted {};
 
 }  // namespace flexmorph::cases

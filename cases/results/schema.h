@@ -8,46 +8,57 @@
 
 #include "cases/results/run_result.h"
 
-/// The numbers of run.json: name, unit, meaning and accessor of each. run.json, [expect] and the
-/// reference in cases/README.md are made from these tables.
+/// Tables of the numbers of run.json: name, unit, meaning and accessor of each number. run.json,
+/// [expect] and the reference in cases/README.md are generated from these tables.
 namespace flexmorph::cases {
 
-/// A value of a number; std::monostate where a run has no such number, nullptr where it is unknown.
+/// The value of a number: std::monostate if a run has no such number, nullptr if it is unknown.
 using Value = std::variant<std::monostate, std::nullptr_t, bool, int, double, std::string>;
 
-/// Returns a number, or nothing where it is absent or not finite.
+/// Returns a number, or std::monostate if it is absent or not finite.
 Value optional_number(const std::optional<double>& number);
 
-/// A number (or flag, or word) that a part of a result has.
+/// A named number (or flag, or text) of a component of a result.
 template <class Source>
 struct Quantity {
-  const char *name, *unit, *meaning;
-  Value (*value)(const Source&);
+  const char *name, *unit, *meaning;  ///< Name in run.json, unit, and meaning as text.
+  Value (*value)(const Source&);      ///< Returns the value of the number.
 };
 
+/// Returns the numbers of the outcome of a design.
 std::span<const Quantity<mmc::BodyOutcome>> design_quantities();
-/// Of designs whose widths are limited.
+/// Returns the numbers of the outcome of a design whose widths are limited.
 std::span<const Quantity<mmc::BodyOutcome>> length_scale_quantities();
+/// Returns the numbers of the verification of an outline.
 std::span<const Quantity<VerifiedOutline>> outline_quantities();
+/// Returns the numbers of a load case of a static plate.
 std::span<const Quantity<StaticLoad>> static_load_quantities();
+/// Returns the numbers of the difference between the loads of a design and of its motion.
 std::span<const Quantity<mmc::LoadDifference>> load_difference_quantities();
+/// Returns the numbers of the deflection of a point.
 std::span<const Quantity<PointVariation>> point_quantities();
+/// Returns the numbers of a motion.
 std::span<const Quantity<fem::MotionResult>> motion_quantities();
+/// Returns the numbers of a path of equilibria.
 std::span<const Quantity<PathRecord>> path_quantities();
+/// Returns the numbers of a design cycle.
 std::span<const Quantity<mmc::CycleVerdict>> cycle_quantities();
+/// Returns the numbers of a corrected cycle.
 std::span<const Quantity<mmc::CorrectedCycle>> corrected_cycle_quantities();
+/// Returns the numbers of an optimality certificate.
 std::span<const Quantity<mmc::MotionCertificate>> certificate_quantities();
 
-/// A value as text, empty where there is none; numbers in full precision.
+/// Returns a value as text: numbers in full precision, and an empty text if there is no value.
 std::string text_of(const Value& value);
-/// A value as JSON: "infinite" of an infinite number, null of one that is not a number.
+/// Returns a value as JSON: "infinite" for an infinite number, null for NaN and for no value.
 nlohmann::ordered_json json_of(const Value& value);
 
-/// All tables as Markdown, for cases/README.md.
+/// Returns all tables as Markdown, for cases/README.md.
 std::string results_as_markdown();
 
-/// Replaces the references of keys and of results in the text of cases/README.md.
-/// @throws Error (input) for a file without the lines that mark them
+/// Replaces the references of keys and of results in the text of cases/README.md and returns the
+/// text.
+/// @throws Error (input) for a text without the lines that mark the references
 std::string with_references(const std::string& text);
 
 }  // namespace flexmorph::cases

@@ -4,53 +4,56 @@
 #include <string>
 #include <vector>
 
-/// Tables that grow row by row, and what their columns hold.
+/// Tables that are filled row by row, and descriptions of their columns.
 namespace flexmorph::cases {
 
-/// Columns that tables, plots and run.json treat together.
+/// Groups of columns that tables, plots and run.json handle in the same way.
 enum class ColumnGroup {
-  abscissa,    ///< time, number of the equilibrium, load factor
-  deflection,  ///< tip deflections of bodies
-  across,      ///< deflections of observed points of designed bodies
-  length,      ///< lengths of bodies whose material flows
-  observed,    ///< observed points, and free material lines
-  measured,    ///< quantities of [[measure]]
-  mechanism,   ///< frames, joints, hubs, springs, momentum
-  energy,      ///< energies of the whole model
-  term,        ///< energies that terms of bodies account for
-  power,       ///< powers that enter the mechanism
-  solver       ///< numbers of the solution method
+  abscissa,    ///< Time, number of the equilibrium, load factor.
+  deflection,  ///< Tip deflections of bodies.
+  across,      ///< Deflections of observed points of designed bodies.
+  length,      ///< Lengths of bodies whose material moves through the mesh.
+  observed,    ///< Observed points, and material coordinates of free lines of the mesh.
+  measured,    ///< Quantities of [[measure]].
+  mechanism,   ///< Frames, joints, hubs (rigid frames with prescribed motion), springs, momentum.
+  energy,      ///< Energies of the whole model.
+  term,        ///< Energies of terms of bodies, for example dissipated energy.
+  power,       ///< Powers that enter the mechanism.
+  solver       ///< Numbers of the solution method.
 };
 
-/// Describes a column of a table.
+/// The description of a column of a table.
 struct ColumnInfo {
-  std::string name;
-  std::string unit;     ///< "m"; "-" of a number without a unit
-  std::string meaning;  ///< one sentence
-  ColumnGroup group = ColumnGroup::observed;
+  std::string name;                           ///< Name of the column.
+  std::string unit;                           ///< Unit, as "m"; "-" for a number without a unit.
+  std::string meaning;                        ///< Meaning of the column as a short text.
+  ColumnGroup group = ColumnGroup::observed;  ///< Group of the column.
 };
 
 /// A table with one value per column and row.
 struct Series {
-  std::vector<ColumnInfo> columns;
-  std::vector<std::vector<double>> values;  ///< (n_columns) of (n_rows)
+  std::vector<ColumnInfo> columns;          ///< Descriptions of the columns (n_columns).
+  std::vector<std::vector<double>> values;  ///< Values by column (n_columns x n_rows).
 
   Series() = default;
+  /// Creates a table without rows.
   explicit Series(std::vector<ColumnInfo> described)
       : columns(std::move(described)), values(columns.size()) {}
 
+  /// Returns the number of rows.
   std::size_t n_rows() const { return values.empty() ? 0 : values.front().size(); }
   /// Appends a row (n_columns).
   void add_row(std::span<const double> row);
-  /// The values of a column (n_rows); null where the table has no column of this name.
+  /// Returns the values of a column (n_rows); null if the table has no column of this name.
   const std::vector<double>* find(const std::string& name) const;
-  /// The values of a column (n_rows). @throws std::out_of_range where there is none.
+  /// Returns the values of a column (n_rows).
+  /// @throws std::out_of_range if the table has no column of this name.
   const std::vector<double>& at(const std::string& name) const;
-  /// Indices of the columns of a group, in their order.
+  /// Returns the indices of the columns of a group, in the order of the table.
   std::vector<std::size_t> of_group(ColumnGroup group) const;
 };
 
-/// The largest absolute value; 0 of no values.
+/// Returns the largest absolute value; 0 if there are no values.
 double largest_size(std::span<const double> values);
 
 }  // namespace flexmorph::cases

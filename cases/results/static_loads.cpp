@@ -8,10 +8,11 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Cells with this fraction of material count as material.
+/// Smallest area fraction of material of a cell that counts as material [-].
 constexpr double kHalfFull = 0.5;
 
-/// Largest displacement of the corners of cells of material, and largest stress at their centres.
+/// Computes the largest displacement of the corners of the cells of material, and the largest von
+/// Mises stress at the centres of these cells.
 /// @param u  displacements of the nodes (2 n_nodes) [m]
 void measure_cells(const mmc::BodyProblem& problem, const VectorXd& fractions, const VectorXd& u,
                    StaticLoad& out) {

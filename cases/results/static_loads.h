@@ -7,27 +7,29 @@
 #include "cases/results/verified_outline.h"
 #include "cases/scene/scene.h"
 
-/// What the load cases of a plate at rest do to its final design.
+/// Results of the load cases of a static plate, for its final design.
 namespace flexmorph::cases {
 
 /// The result of one load case: a row of loads/<domain>.csv.
 struct StaticLoad {
-  std::string name;
-  double weight = 1;
-  double compliance = 0;            ///< of the cells of the crisp design [J]
-  bool active = false;              ///< whether it is within 1 % of the largest compliance
-  double strain_energy = 0;         ///< by `source` [J]
-  double largest_displacement = 0;  ///< by `source` [m]
-  double largest_stress = 0;        ///< von Mises, by `source` [Pa]
-  std::string source;               ///< "outline" or "cells"
+  std::string name;                 ///< Name of the load case.
+  double weight = 1;                ///< Weight of the load case [-].
+  double compliance = 0;            ///< Compliance of the cells of the crisp design [J].
+  bool active = false;              ///< True if the compliance is within 1 % of the largest one.
+  double strain_energy = 0;         ///< Strain energy, computed by the model `source` [J].
+  double largest_displacement = 0;  ///< Largest displacement, by the model `source` [m].
+  double largest_stress = 0;        ///< Largest von Mises stress, by the model `source` [Pa].
+  std::string source;               ///< Model of the three results: "outline" or "cells".
 };
 
-/// Returns the results of all load cases of a plate at rest, in their order: those of the
-/// verification of the outline where it has numbers, otherwise those of the cells of the crisp
-/// design. Displacements are the largest of any point of the material. The stress of an outline is
-/// the largest one away from supports and loads, that of cells the largest one at the centres of
-/// cells that are at least half full.
-/// @param outline  null: there is no verification
+/// Returns the results of all load cases of a static plate, in the order of the domain. The results
+/// come from the verification of the outline if it has numbers, otherwise from the cells of the
+/// crisp design. The displacement is the largest one of any point of the material. The stress of an
+/// outline is the largest one away from supports and loads; the stress of cells is the largest one
+/// at the centres of cells that are at least half full.
+/// @param loads    evaluator of the load cases on the cells
+/// @param outcome  outcome of the final design
+/// @param outline  verification of the outline; null means that there is none
 /// @throws Error (numerical) from statics
 std::vector<StaticLoad> static_loads_of(const Domain& domain, const mmc::BodyProblem& problem,
                                         mmc::ComplianceEvaluator& loads,

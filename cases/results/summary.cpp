@@ -7,7 +7,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Mass of all designs; their volume fractions where a plate has no density.
+/// Returns a message on the mass of all designs, or on their volume fractions if they have no
+/// density.
 std::string mass_words(const DesignResult& design) {
   double mass = 0;
   std::string volumes;
@@ -26,8 +27,8 @@ std::string gain(double designed, double uniform) {
          " uniform material of this mass";
 }
 
-/// How the designs compare with uniform material: in the motion, or under the loads of a plate at
-/// rest.
+/// Returns a message that compares the designs with uniform material, in the motion or under the
+/// loads of a static plate.
 std::string gain_words(const RunResult& result) {
   const std::optional<MotionRecord>&motion = result.motions.assessed(),
         &uniform = result.motions.assessed_uniform();
@@ -55,8 +56,8 @@ std::string verdict_words(const DesignResult& design) {
 
 namespace {
 
-/// Variation of a column in the motions that designs are assessed by; nothing where one of them
-/// lacks it.
+/// Returns the statistics of a column in the motions by which designs are assessed; nothing if a
+/// motion is missing or does not have the column.
 std::optional<PointVariation> column_variation(const MotionResults& motions,
                                                const std::string& column, const std::string& name) {
   const auto of = [&](const std::optional<MotionRecord>& motion) -> std::optional<Variation> {

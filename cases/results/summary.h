@@ -6,8 +6,9 @@
 
 namespace flexmorph::cases {
 
-/// What the last line of a run with designs says of them: mass, gain over uniform material of the
-/// same mass with the measure it is taken by, verdicts, seconds. Of a run without designs: seconds.
+/// Returns the summary for the last line of a run. With designs it contains the mass, the gain over
+/// uniform material of the same mass with its measure, the verdicts, and the wall time. Without
+/// designs it contains the wall time only.
 std::string summary_words(const RunResult& result);
 
 }  // namespace flexmorph::cases

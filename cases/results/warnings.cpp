@@ -15,18 +15,22 @@ namespace {
 
 using Warnings = std::vector<Warning>;
 
-constexpr double kLargestLoss = 0.01;   // of the largest energy, by the time integration
-constexpr double kLargestDefect = 0.1;  // of the balance of energy before a motion is warned of
-constexpr double kLargestMove = 0.05;   // of the largest strain energy, by a change of a mesh
-constexpr double kCellsApart = 0.02;    // sharp compliances from body-fitted ones
-// Compliance of the blurred design over that of the sharp one. Where the start of a design is
-// analysed it is about 2; 10 is no design any more but heavy, soft edges.
+// Thresholds of warnings: the energy change by the time integration, the error of the energy
+// balance (both relative to the largest energy), the strain energy change by a mesh change
+// (relative to the largest strain energy), and the difference of crisp and body-fitted compliance.
+constexpr double kLargestLoss = 0.01;
+constexpr double kLargestDefect = 0.1;
+constexpr double kLargestMove = 0.05;
+constexpr double kCellsApart = 0.02;
+// Threshold of the ratio of the compliances of the regularized and the crisp design. The ratio is
+// about 2 for the start of a design; at 10 the heavy, soft edges of the design dominate.
 constexpr double kHangingMass = 10;
 
-/// Part of a force that may act on void before a design is of no use.
+/// Largest fraction of a force that may act on void in a usable design [-].
 constexpr double kLargestPartOnVoid = 0.05;
 
-/// Limits that the crisp design violates. (What bodies share is no limit of one.)
+/// Adds warnings about the limits that the crisp design violates. Limits that several bodies share
+/// are skipped.
 void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
   for (const mmc::Limit& limit : p.goal.limits) {
     if (!mmc::binds_body(limit, p)) continue;
@@ -45,22 +49,22 @@ void add_limits(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& 
   }
 }
 
-/// Is the balance of energy so bad that nobody should trust the motion?
+/// Tells whether the error of the energy balance is so large that the motion is not reliable.
 bool misses_energy(const Scene& scene, const MotionRecord& motion) {
   return motion.result.energy_defect > kLargestDefect &&
          largest_size(motion.table.at(kDefectColumn)) > stress_round_off(scene);
 }
 
-/// Tells whether a design is to meet what the case asks of it: it was optimized, or the case gives
-/// it. (The layout of boxes that a design starts from where the case gives none is no design.)
+/// Tells whether a design has to satisfy the limits of the case, because it was optimized, is a
+/// part, or is given by the case. The default initial layout of components need not satisfy them.
 bool is_judged(const Scene& scene, const mmc::BodyOutcome& o) {
   return o.iterations > 0 || o.of_part ||
          std::any_of(scene.designs.begin(), scene.designs.end(),
                      [&](const BodyDesign& d) { return d.body == o.body && !d.start.empty(); });
 }
 
-/// A design for a compliance that is worse than the same material spread evenly: of no use where it
-/// was optimized.
+/// Adds a warning if the compliance of a design is larger than that of uniform material of the same
+/// volume. An optimized design is not usable then.
 void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& out) {
   if (!mmc::worse_than_uniform(p, o)) return;
   out.push_back({"body '" + o.body + "': the sharp compliance " +
@@ -69,8 +73,9 @@ void add_worse(const mmc::BodyProblem& p, const mmc::BodyOutcome& o, Warnings& o
                  o.iterations > 0});
 }
 
-/// Loads of a plate at rest that act where the design is void: the energy of its cells is that of
-/// the soft void, and the outline spreads the force over the material that is left of the place.
+/// Adds warnings about loads of a static plate that act on void. On the cells, such a load deforms
+/// the soft void material; in the verification of the outline, the force is distributed over the
+/// material that remains in the region of the load.
 void add_loads_on_void(const Scene& scene, const mmc::BodyProblem& p, const mmc::BodyOutcome& o,
                        Warnings& out) {
   for (const LoadOnVoid& load : loads_on_void(scene, p, o.sharp.fractions))
@@ -81,7 +86,8 @@ void add_loads_on_void(const Scene& scene, const mmc::BodyProblem& p, const mmc:
                    load.part > kLargestPartOnVoid});
 }
 
-/// Warns of what the verification found. A part that does not carry its loads is of no use.
+/// Adds warnings about the verification of an outline. A part that does not carry its loads is not
+/// usable.
 void add_verification(const VerifiedOutline& outline, const mmc::BodyOutcome& outcome,
                       Warnings& out) {
   const double sharp = outcome.sharp.compliance;
@@ -110,7 +116,7 @@ void add_verification(const VerifiedOutline& outline, const mmc::BodyOutcome& ou
                    std::to_string(j.n_pieces) + " pieces are held by nothing"});
 }
 
-/// Names, each once, separated by commas.
+/// Returns the names as a list, each name once, separated by commas.
 std::string list_of(std::vector<std::string> names) {
   std::string out;
   for (size_t k = 0; k < names.size(); ++k)
@@ -120,7 +126,7 @@ std::string list_of(std::vector<std::string> names) {
   return out;
 }
 
-/// What is narrower than it was asked for, or stands alone.
+/// Returns a message on widths that are smaller than required, and on separate regions.
 std::string length_scale_words(const mmc::BodyOutcome& o) {
   const Widths& wanted = o.length_scale->wanted;
   std::vector<std::string> out;
@@ -178,8 +184,9 @@ void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) 
   }
 }
 
-/// Designs whose loads are not those of their motion, and designs whose cells a coarse motion does
-/// not resolve where that motion is all that judges them.
+/// Adds warnings about designs whose loads differ from the loads of the motion with the designs. It
+/// also adds warnings about designs whose cells are not resolved by the elements of the motion, if
+/// the designs are not assessed by a motion on cells.
 void add_load_differences(const Scene& scene, const DesignResult& design, Warnings& out) {
   constexpr double kLargest = mmc::LoadDifference::kLargest;
   const double allowed = std::max(kLargest, scene.cycle.load_difference);
@@ -200,7 +207,7 @@ void add_load_differences(const Scene& scene, const DesignResult& design, Warnin
   }
 }
 
-/// Designs of which the tip or an observed point varies more in the motion than that of uniform
+/// Adds warnings about designs whose tip or observed points vibrate more than with uniform
 /// material.
 void add_variations(const Scene& scene, const RunResult& result, Warnings& out) {
   const MotionResults& motions = result.motions;
@@ -220,8 +227,8 @@ void add_variations(const Scene& scene, const RunResult& result, Warnings& out) 
   }
 }
 
-/// The part of the largest energy that the time integration has brought into the motion, at the
-/// instant where the balance of energy is missed by most; negative where it has taken energy out.
+/// Returns the energy that the time integration has added to the motion, relative to the largest
+/// energy, at the time of the largest error of the energy balance; negative if energy was removed.
 double integrated_part(const MotionRecord& motion) {
   const std::vector<double>& defect = motion.table.at(kDefectColumn);
   if (!(largest_size(defect) > 0)) return 0;
@@ -229,7 +236,7 @@ double integrated_part(const MotionRecord& motion) {
   return -*lowest > *highest ? -motion.result.energy_defect : motion.result.energy_defect;
 }
 
-/// Of bodies whose temperature jumps on the way; nothing where none does.
+/// Returns a message on bodies whose temperature jumps during the motion; empty if there are none.
 std::string jump_words(const Scene& scene) {
   std::string jumps;
   for (const Body& body : scene.bodies)
@@ -243,8 +250,9 @@ std::string jump_words(const Scene& scene) {
          "a power";
 }
 
-/// Adds a warning where changes of a mesh move strain energy: what follows is in part the answer
-/// to them. @param subject  names the motion
+/// Adds a warning if mesh changes alter the strain energy, because the motion after them is then
+/// partly a response to the mesh changes.
+/// @param subject  name of the motion in the message
 void add_mesh_changes(const MotionRecord& motion, const std::string& subject, Warnings& out) {
   double largest = largest_size(motion.table.at(kStrainColumn));
   for (const fem::MeshEvent& event : motion.result.events)
@@ -275,7 +283,7 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
     out.push_back({alternation_words(*motion.result.alternation)});
   else if (damps_no_multipliers(scene))
     out.push_back({undamped_words(scene)});
-  // Steps that the tolerance of the explicit integrator shortens are its own business.
+  // The explicit integrator shortens steps to satisfy its tolerance, which needs no warning.
   if (const fem::CutSteps& cut = motion.result.cut;
       cut.number > 0 && scene.time.integrator != "minimal_coordinates")
     out.push_back({"Newton's method did not solve all steps of " + io::to_text(scene.time.step, 3) +

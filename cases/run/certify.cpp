@@ -14,8 +14,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// The case of a finished run with its designs in place of their starts.
-/// @throws Error (input) where there is no such run.
+/// Returns the scene of a finished run, whose designs start from the final designs of the run.
+/// @throws Error (input) if there is no such run.
 Scene finished_scene(const CertifyOptions& options) {
   const std::string kept = finished_case(options.directory);
   const Scene first = read_scene(io::CaseFile(kept, options.overrides));
@@ -30,7 +30,7 @@ Scene finished_scene(const CertifyOptions& options) {
   return read_scene(io::CaseFile(kept, changes));
 }
 
-/// Computes the loads of the motion with the designs of these problems.
+/// Computes the equivalent static loads of the motion with the given designs.
 std::vector<fem::EslSets> loads_of(const RunContext& run,
                                    const std::vector<mmc::BodyProblem>& problems) {
   MotionRequest request = resumable_request(run, "motion", "motion_certified.csv");

@@ -16,7 +16,7 @@
 namespace flexmorph::cases {
 namespace {
 
-/// The static problems of all designs under loads that do not change.
+/// The static problems of all designs under constant loads.
 class LoadsOfDesigns {
  public:
   explicit LoadsOfDesigns(std::vector<fem::EslSets> loads) : loads_(std::move(loads)) {}
@@ -38,12 +38,13 @@ class LoadsOfDesigns {
   std::vector<fem::EslSets> loads_;
 };
 
-/// Draws where the motion would move material: an arrow from the centre of every component, the
-/// longest of them a twentieth of the picture.
+/// Returns a picture with arrows that show in which direction a component has to move so that the
+/// objective of the motion decreases. The arrows begin at the centres of the components, and the
+/// longest arrow has a twentieth of the size of the picture.
 std::string picture_of(const mmc::BodyProblem& problem,
                        const mmc::MotionCertificate::Body& certified) {
   const Grid& g = problem.grid;
-  constexpr double kArrow = 0.05;  // of the picture: as much room is around it
+  constexpr double kArrow = 0.05;  // length of the longest arrow and of the margin / picture size
   const Vec2 corner(g.x0, g.y0), room = Vec2::Constant(kArrow * std::max(g.width, g.height));
   const Box frame{corner - room, corner + Vec2(g.width, g.height) + room};
   std::string svg =
@@ -96,7 +97,7 @@ void write_certificate(const Scene& scene, const mmc::MotionCertificate& certifi
 
 namespace {
 
-/// Computes the loads of the motion with the designs of these problems, on their grids.
+/// Computes the equivalent static loads of the motion with the given designs, on their grids.
 LoadsOfDesigns loads_of(const RunContext& run, const PreparedCase& prepared,
                         const std::vector<mmc::BodyProblem>& problems) {
   MotionRequest request;
@@ -109,7 +110,8 @@ LoadsOfDesigns loads_of(const RunContext& run, const PreparedCase& prepared,
   return LoadsOfDesigns(run_motion(prepared, request, run.folder).loads);
 }
 
-/// The scene with designs on cells of another size; their bands are as many of them.
+/// Returns the scene with designs on cells of another size [m]. The widths of the bands, measured
+/// in cells, do not change.
 Scene with_cells(Scene scene, double cell) {
   for (BodyDesign& d : scene.designs) {
     const auto n = static_cast<int>(std::lround(cell / d.grid.dx()));
@@ -122,19 +124,19 @@ Scene with_cells(Scene scene, double cell) {
   return scene;
 }
 
-/// Corrected designs of other problems, on their own grids.
+/// Copies designs to problems with the same bodies, whose grids may differ.
 void take_designs(const std::vector<mmc::BodyProblem>& from, std::vector<mmc::BodyProblem>& to) {
   for (size_t k = 0; k < to.size(); ++k)
     to[k].design = to[k].design.with(from[k].design.components());
 }
 
-/// J of the crisp outlines of the designs, on the cells of the case.
+/// Returns the objective J of the crisp outlines of the designs, on the cells of the case.
 double crisp_value(const RunContext& run, const std::vector<mmc::BodyProblem>& problems) {
   SceneMotion motion(run.prepared, {0, run.scene().time.step, 0}, run.go_on);
   return mmc::sharp_objective(problems, motion);
 }
 
-/// The cycles of a run that correct its designs.
+/// The corrected cycles of a run.
 class Correcting {
  public:
   Correcting(const RunContext& run, DesignResult& design) : run_(run), design_(design) {}
@@ -163,7 +165,7 @@ class Correcting {
   }
 
  private:
-  /// Runs the cycles; the designs of the result are then the corrected ones.
+  /// Runs the cycles and stores the corrected designs in the result.
   void correct() {
     const Scene& scene = run_.scene();
     const PreparedCase coarse(with_cells(scene, scene.cycle.cell));
@@ -197,7 +199,7 @@ class Correcting {
     return out;
   }
 
-  /// Replaces the outcome of a body.
+  /// Replaces the outcome of a body, keeps the numbers of its optimization, and writes the files.
   void take(mmc::BodyOutcome found, const fem::EslSets& loads, size_t body) {
     mmc::BodyOutcome& before = design_.outcomes[body];
     found.iterations = before.iterations;
@@ -237,7 +239,7 @@ mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& s
   run.progress.begin("certificate");
   SceneMotion motion(run.prepared, {settings.cell, settings.step, settings.checkpoints}, run.go_on);
   const LoadsOfDesigns kept({loads.begin(), loads.end()});
-  // Copies: a certificate leaves the designs as they are.
+  // The problems are copied, because a certificate must not change the designs.
   std::vector<mmc::BodyProblem> problems(designs.begin(), designs.end());
   std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> responses = kept.of(problems);
   std::vector<mmc::LoadedBody> bodies;

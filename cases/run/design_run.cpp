@@ -9,8 +9,8 @@
 
 namespace flexmorph::cases {
 
-/// The evaluations of designs, kept in the folder while the run is not done; without a folder none
-/// are kept.
+/// The evaluations of designs, which are stored in the run folder until the run is complete.
+/// Without a folder nothing is stored.
 class KeptEvaluations {
  public:
   explicit KeptEvaluations(RunFolder* folder) {
@@ -21,7 +21,7 @@ class KeptEvaluations {
   }
 
   mmc::Past* past() { return past_ ? &*past_ : nullptr; }
-  /// ", 35 state solves were known"; empty in a run that began anew.
+  /// Returns ", 35 state solves were known"; empty in a run that was not resumed.
   std::string words() const {
     return counted(static_cast<size_t>(log_ ? log_->n_known() : 0), "state solve was known",
                    "state solves were known");
@@ -50,7 +50,7 @@ std::string measure_words(const Cycle& cycle, double value) {
          io::to_text(value, 5) + " m";
 }
 
-/// "loads of 'plate' and its motion are 31 % apart, 5 % more by geometry".
+/// Returns "loads of 'plate' and its motion are 31 % apart, geometry (...) 5 %".
 std::string difference_words(const mmc::LoadDifference& d) {
   return "loads of '" + d.body + "' and its motion are " + io::to_text(100 * d.loads, 2) +
          " % apart, geometry (large deflections, coarse elements) " +
@@ -69,7 +69,7 @@ mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
   return {scene.output.sharp_every, scene.optimizer, run.condition, kept.past(), run.go_on};
 }
 
-/// Writes every iteration, hands it on and shows it.
+/// Returns an observer that writes every iteration, passes it to the callback, and displays it.
 mmc::IterationObserver iteration_observer(const RunContext& run) {
   return [&run, most = run.prepared.extent().iterations](const mmc::IterationReport& r) {
     if (run.folder) run.folder->add_iteration(r);
@@ -97,7 +97,7 @@ void DesignRun::design_moving() {
   run_cycles(loads);
   if (scene.cycle.correction.kind != mmc::Correction::none) {
     correct_by_motion(run_, loads, design_);
-    motions_ = {};  // they are those of the design before
+    motions_ = {};  // the motions belong to the design before the correction
   }
   verify_outlines(loads);
   const double begin = cpu_seconds();
@@ -113,7 +113,7 @@ void DesignRun::compare_loads(std::span<const fem::EslSets> own) {
         mmc::load_difference(design_.problems[i], design_.outcomes[i].load_compliances, own[i]));
 }
 
-/// The loads of the cycle that goes on, and of the best one so far.
+/// The loads of the current cycle and of the best cycle so far.
 struct DesignRun::CycleLoads {
   std::vector<fem::EslSets>& now;
   std::vector<fem::EslSets> best;
@@ -145,7 +145,7 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
     design_.verdicts.assign(verdicts.begin(), verdicts.end());
     if (run_.folder) run_.folder->write_cycles(verdicts, {});
     if (verdicts.back().best) {
-      loads.best = loads.now;  // the next cycle has others
+      loads.best = loads.now;  // the next cycle replaces loads.now
       motions.keep_assessed();
     }
     run_.progress.say(verdict_words(run_.scene().cycle, verdicts.back()));
@@ -171,7 +171,7 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
   const mmc::LoopSettings settings{analysed ? 1 : scene.cycle.max_cycles, scene.cycle.tolerance,
                                    scene.cycle.load_difference, settings_of(run_, kept),
                                    motions.judge()};
-  // What was computed is kept also when a cycle fails.
+  // Results of completed motions are stored even if a cycle fails.
   const auto keep = [&] {
     design_.seconds_motion = motions.seconds();
     motions_ = motions.take_results();
@@ -226,7 +226,7 @@ void DesignRun::verify_outlines(std::span<const fem::EslSets> loads) {
     VerifiedOutline found =
         verify_outline_of(run_.scene(), design_.problems[i], loads.empty() ? nullptr : &loads[i],
                           run_.go_on, run_.folder);
-    if (!run_.go_on()) throw Interrupted();  // it was not done to the end
+    if (!run_.go_on()) throw Interrupted();  // the verification is incomplete
     design_.outlines.push_back(std::move(found));
     run_.progress.say(outline_words(design_.outlines.back(), design_.outcomes[i].sharp.compliance));
   }

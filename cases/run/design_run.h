@@ -5,23 +5,28 @@
 
 namespace flexmorph::cases {
 
-/// The end of the names of files that keep the evaluations of designs until a run is done.
+/// Ending of the names of the files that store the evaluations of designs until a run is complete.
 inline constexpr const char* kEvaluations = "evaluations.log";
 
 class CycleMotions;
 class KeptEvaluations;
 
-/// A run with designs: cycles of motions and designs, or the design of a plate at rest; then the
-/// verification of the outlines, the motions with the final designs, and the certificate.
+/// A run with designs. It optimizes moving bodies in cycles of motions and designs, or a static
+/// plate in one design. Afterwards it verifies the outlines, computes the motions with the final
+/// designs, and computes the certificate.
 class DesignRun {
  public:
+  /// Creates the run; the context has to outlive it.
   explicit DesignRun(const RunContext& run) : run_(run) {}
 
-  /// Runs all of it. @throws Error, Interrupted; take_design() and take_motions() then have what
-  /// was computed before
+  /// Computes all stages of the run. After an exception, take_design() and take_motions() return
+  /// the results that were computed before it.
+  /// @throws Error, Interrupted
   void run();
 
+  /// Returns the designs of the run; can be called once.
   DesignResult take_design() { return std::move(design_); }
+  /// Returns the motions of the run; can be called once.
   MotionResults take_motions() { return std::move(motions_); }
 
  private:

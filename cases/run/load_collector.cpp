@@ -14,7 +14,8 @@ void remember(Memory& memory, EslSet& s) {
          s.thermal_stretch, s.held_stretch, s.held_end_stretch);
 }
 
-/// All but the grid and the pins, which are those of the case.
+/// Saves or restores the load sets. The grid and the pins are not saved, because the case defines
+/// them.
 void remember(Memory& memory, EslSets& loads) { memory(loads.sets); }
 
 }  // namespace fem
@@ -51,7 +52,7 @@ fem::EslSet LoadCollector::load_of(const StepRecord& step, const BodyDesign& des
     set = fem::equivalent_static_load(step.model, step.x, body, design.link->pins, design.grid,
                                       masses, forces, gravity);
   } else {
-    // The body rides in a hub or on a rigid body.
+    // The root of the body moves with a hub (a rigid frame with prescribed motion) or a rigid body.
     const auto growth = std::find_if(growths_.begin(), growths_.end(),
                                      [&](const auto& g) { return g.body == design.body; });
     set = fem::equivalent_static_load(step.model, step.x, *growth, design.grid, masses, forces,

@@ -5,9 +5,11 @@
 
 namespace flexmorph::cases {
 
-/// Collects the equivalent static loads of the designed bodies at multiples of esl.every.
+/// A step writer that collects the equivalent static loads of the designed bodies at the times that
+/// are multiples of esl.every.
 class LoadCollector : public StepWriter {
  public:
+  /// Creates the collector and one empty entry in `loads` per design.
   /// @param growths  moving roots of the model
   /// @param loads    receives one entry per design; outlives the writer
   LoadCollector(const Scene& scene, std::span<const fem::Growth> growths,

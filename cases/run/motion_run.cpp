@@ -14,7 +14,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Says what is unusual about a motion: its start, alternating multipliers, steps that are cut.
+/// Reports unusual events of a motion: remarks on its start, alternating multipliers, and time
+/// steps that were shortened.
 class MotionMessages {
  public:
   MotionMessages(const Scene& scene, const MotionRequest& request, const std::string& start_words,
@@ -58,7 +59,7 @@ std::vector<VectorXd> densities_of(const MotionRequest& request) {
   return out;
 }
 
-/// Hands the steps of a motion to the writers that the request asks for.
+/// Passes the steps of a motion to the writers that the request requires.
 class StepSequence {
  public:
   StepSequence(const Scene& scene, const MotionRequest& request, Mechanism& mechanism,
@@ -90,7 +91,7 @@ class StepSequence {
     if (request_.reached) request_.reached(step.x.t);
   }
 
-  /// Saves or restores everything between two steps.
+  /// Saves or restores the state of the messages, columns and writers between two steps.
   void remember(Memory& memory) {
     messages_.remember(memory);
     columns_.remember(memory, model_);
@@ -111,17 +112,17 @@ class StepSequence {
   std::vector<std::unique_ptr<StepWriter>> writers_;
 };
 
-/// Says where a motion failed that has the steps of a record.
+/// Returns the state of a motion that failed after the steps of a record.
 Failure failure_in(const MotionRequest& request, const MotionRecord& record) {
   Failure out;
   const auto n = static_cast<int>(record.table.n_rows());
   out.phase = request.phase;
   out.time = n == 0 ? 0 : record.time().back();
-  out.step = std::max(0, n - 1);  // the start is no step
+  out.step = std::max(0, n - 1);  // the first row is the start
   return out;
 }
 
-/// What a motion depends on besides the case, as bytes.
+/// Returns the settings of a request on which the motion depends besides the case, as bytes.
 std::string bytes_of(const MotionRequest& request) {
   Memory m;
   MeshChoice mesh = request.mesh;
@@ -186,7 +187,7 @@ class Resuming {
   std::optional<MotionCheckpoint> checkpoint_;
 };
 
-/// A copy of the mechanism of a case with the designs and the settings of a request.
+/// Returns a copy of the mechanism of a case, with the designs and the settings of a request.
 Mechanism mechanism_of(const PreparedCase& prepared, const MotionRequest& request) {
   const Scene& scene = prepared.scene();
   Mechanism out = prepared.mechanism(request.mesh);

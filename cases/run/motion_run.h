@@ -8,42 +8,47 @@
 
 namespace flexmorph::cases {
 
-/// Says which motion is computed and what it leaves behind.
+/// Specification of a motion: its model, its time step, its output and its callbacks.
 struct MotionRequest {
-  std::vector<fem::Factors>
-      factors;  ///< scale factors of the cells, per design; empty: full material
-  MeshChoice mesh;
-  std::optional<double> step;        ///< time step other than the scene's [s]
-  bool loads = false;                ///< whether equivalent static loads are collected
-  double frames_every = 0;           ///< spacing of frames for ParaView [s]; 0: no frames
-  int snapshots = 0;                 ///< number of pictures of a mechanism; 0, or at least 2
-  bool condition = false;            ///< whether the condition of the last matrix is estimated
-  bool balance = true;               ///< whether the energy balance is kept
-  std::string table = "motion.csv";  ///< file of the run folder for the rows
-  std::string phase = "motion";      ///< part of the run that messages name
-  /// File of the run folder that keeps what the motion needs to be resumed; empty: no such file.
-  std::string checkpoint;
-  double checkpoint_every = 1;  ///< least wall time between two of them [s]
-  bool resume = false;          ///< whether the motion is resumed from the checkpoint, if it fits
+  /// Scale factors of stiffness and mass of the cells, per design; empty means full material.
+  std::vector<fem::Factors> factors;
 
-  /// Receives the rows of a motion that fails or is interrupted; null: they are lost.
+  MeshChoice mesh;             ///< Mesh of the motion; by default the mesh of the scene.
+  std::optional<double> step;  ///< Time step [s]; absent means the time step of the scene.
+  bool loads = false;          ///< True if equivalent static loads are collected.
+  double frames_every = 0;     ///< Time between two frames for ParaView [s]; 0 means no frames.
+  int snapshots = 0;           ///< Number of pictures of a mechanism: 0, or at least 2.
+  bool condition = false;      ///< True if the condition of the last matrix is estimated.
+  bool balance = true;         ///< True if the energy balance is computed.
+
+  std::string table = "motion.csv";  ///< Name of the file in the run folder for the rows.
+  std::string phase = "motion";      ///< Name of the phase of the run in messages.
+  std::string checkpoint;            ///< Name of the checkpoint file; empty means no checkpoint.
+  double checkpoint_every = 1;       ///< Minimum wall time between two checkpoints [s].
+  bool resume = false;  ///< True if the motion resumes from the checkpoint, if that fits.
+
+  /// Receives the rows of a motion that fails or is interrupted; null means they are discarded.
   std::optional<MotionRecord>* unfinished = nullptr;
 
-  std::function<bool()> go_on;                      ///< asked at every step; false interrupts
-  std::function<void(double)> reached;              ///< told the time of every step [s]
-  std::function<void(const std::string&)> say;      ///< told what is unusual when it happens
-  std::function<void(const std::string&)> resumed;  ///< told where or why not the motion resumes
+  std::function<bool()> go_on;          ///< Cancellation callback of every step; false stops.
+  std::function<void(double)> reached;  ///< Callback that receives the time of every step [s].
+
+  /// Callback that receives a message when something unusual happens during the motion.
+  std::function<void(const std::string&)> say;
+
+  /// Callback that receives the message at which time the motion resumes, or why it restarts.
+  std::function<void(const std::string&)> resumed;
 };
 
 /// The result of run_motion().
 struct MotionOutcome {
-  MotionRecord record;
-  std::vector<fem::EslSets> loads;  ///< one entry per design, where loads were asked for
+  MotionRecord record;              ///< Table, pictures and counts of the motion.
+  std::vector<fem::EslSets> loads;  ///< One entry per design; empty unless loads were requested.
 };
 
 /// Integrates the motion of a copy of the mechanism of a case.
-/// @param folder  receives the table of steps, the frames and the checkpoint; null: nothing is
-///                written, and the request asks for no frames
+/// @param folder  receives the table of steps, the frames and the checkpoint; null means that
+///                nothing is written, and then the request must not contain frames
 /// @throws FailedRun or Interrupted; the steps before are in the table, the checkpoint is written
 MotionOutcome run_motion(const PreparedCase& prepared, const MotionRequest& request,
                          RunFolder* folder = nullptr);

@@ -31,14 +31,14 @@ std::vector<fem::Factors> final_factors(std::span<const mmc::BodyProblem> proble
   return out;
 }
 
-/// Gives a motion the mesh and the time step of a verification.
+/// Sets the mesh and the time step of a verification in a request.
 void set_verified(const Verify& verify, MotionRequest& request) {
   request.mesh = {verify.mesh, verify.refine, verify.cells};
   request.step = verify.step;
   request.balance = false;
 }
 
-/// The number that cycles are compared by.
+/// Returns the number by which cycles are compared; smaller is better.
 double measure_of(const Cycle& cycle, const MotionRecord& record) {
   if (cycle.compare_by == CycleMeasure::strain_energy) return record.strain_integral();
   const std::vector<double>* tip = record.table.find(cycle.compare_point + kDeflectionEnding);
@@ -54,7 +54,8 @@ double measure_of(const Cycle& cycle, const MotionRecord& record) {
   }
 }
 
-/// Links between two pins have no tip.
+/// Returns a message on the largest tip deflection; empty without a tip, because a body between two
+/// pins has none.
 std::string deflection_words(const MotionRecord& record) {
   const std::vector<size_t> tips = record.table.of_group(ColumnGroup::deflection);
   if (tips.empty()) return "";
@@ -94,7 +95,7 @@ void remove_checkpoints(const FilesOf& files_of) {
   std::error_code none;
   for (const std::string& path : files_of(kCheckpoint)) {
     std::filesystem::remove(path, none);
-    std::filesystem::remove(path + ".tmp", none);  // left when the run was killed while writing
+    std::filesystem::remove(path + ".tmp", none);  // exists if the run was killed while writing
   }
   for (const std::string& path : files_of(kOnCells)) std::filesystem::remove(path, none);
 }
@@ -117,12 +118,13 @@ MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
 }
 
 mmc::CycleMotion CycleMotions::loads(std::span<const fem::Factors> factors) {
-  // Where nothing is optimized, the motion that makes loads is the one with the design.
+  // If nothing is optimized, the motion that supplies the loads is also the motion with the design.
   const bool analysed = run_.scene().optimizer.max_iterations == 0;
   const bool first = ++n_loads_ == 1;
   MotionRequest request = analysed ? result_request(run_, "motion with the design")
                                    : resumable_request(run_, "motion", "motion.csv");
-  // Every cycle has a checkpoint: designs of earlier cycles come back from their evaluations.
+  // Every cycle has its own checkpoint. A resumed run restores the designs of earlier cycles from
+  // the stored evaluations.
   request.checkpoint = "motion_" + io::to_text(n_loads_) + kCheckpoint;
   request.factors.assign(factors.begin(), factors.end());
   request.loads = true;
@@ -157,15 +159,15 @@ void CycleMotions::keep_assessed() {
 
 namespace {
 
-/// A motion that does not need the others.
+/// A motion that is independent of the motions computed at the same time.
 struct IndependentMotion {
-  double cost;  ///< relative CPU time
+  double cost;  ///< Relative CPU time [-].
   MotionRequest request;
-  std::optional<MotionRecord>* record;  ///< receives its record
+  std::optional<MotionRecord>* record;  ///< Receives the record of the motion.
   std::vector<fem::EslSets>* loads = nullptr;
 };
 
-/// Computes motions at the same time, where there are threads for it.
+/// Computes motions at the same time, as far as the number of threads allows.
 /// @throws as fem::side_by_side(); Interrupted
 void run_side_by_side(const RunContext& run, const std::vector<IndependentMotion>& motions) {
   std::vector<fem::Job> jobs;
@@ -204,7 +206,8 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
   }
   if (scene.verify) {
     run.progress.say("verification on " + scene.verify->words());
-    // A finer mesh, and mostly shorter steps; cells are hundreds of times as many.
+    // Estimated cost relative to the mesh of the case: [verify] has a finer mesh and usually
+    // shorter steps; a mesh of cells has hundreds of times as many elements.
     const double finer = on_cells ? 100 : 4;
     if (run.uniform) {
       MotionRequest request = resumable_request(run, "verification with uniform material",

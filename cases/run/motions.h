@@ -4,46 +4,52 @@
 #include "cases/run/motion_run.h"
 #include "cases/run/run_context.h"
 
-/// The motions of a run: those that make loads, and those that designs are assessed by.
+/// The motions of a run: the motions that supply equivalent static loads, and the motions by which
+/// designs are assessed.
 namespace flexmorph::cases {
 
-/// The request of a motion with the callbacks of a run: progress on the screen, interruption, and a
-/// checkpoint, "NAME.checkpoint" of the table "NAME.csv", that is kept until the run is done.
+/// Returns the request of a motion with the callbacks of a run: it shows progress on the terminal,
+/// can be interrupted, and writes a checkpoint. The checkpoint of the table "NAME.csv" is
+/// "NAME.checkpoint"; it is kept until the run is complete.
 MotionRequest resumable_request(const RunContext& run, const std::string& phase,
                                 const std::string& table);
 
-/// The request of the motion with the result of a run: frames, snapshots and condition as the case
-/// and the options want them.
+/// Returns the request of the motion that is the result of a run. Frames, snapshots and the
+/// estimate of the condition are set by the case and the options.
 MotionRequest result_request(const RunContext& run, const std::string& phase);
 
-/// Says what the meshes of a motion did: "16 changes of the mesh", or "even mesh" where bodies flow
-/// and nothing changed.
+/// Returns a message on the mesh changes of a motion: "16 changes of the mesh", or "even mesh" if a
+/// body has a uniform moving mesh and no mesh changed.
 std::string mesh_words(const Scene& scene, const fem::MotionResult& result);
 
-/// Paths of the files that a run made in its folder, by the ending of their names.
+/// A function that returns the paths of the files of a run whose names have the given ending.
 using FilesOf = std::function<std::vector<std::string>(const std::string& ending)>;
 
-/// Removes checkpoints, and tables of cycles that did not improve the design, of a run whose
-/// results are all written.
+/// Removes checkpoints, and tables of cycles that did not improve the design. It is called when all
+/// results of the run are written.
 void remove_checkpoints(const FilesOf& files_of);
 
-/// The motions of the cycles of a run: those that make loads, on the elements of the case, and
-/// those on the cells of the designs, where the case verifies on cells.
+/// The motions of the design cycles of a run: motions on the elements of the case that supply the
+/// loads, and motions on the cells of the designs if the case verifies on cells.
 class CycleMotions {
  public:
+  /// Creates the motions of a run; the context has to outlive them.
   explicit CycleMotions(const RunContext& run) : run_(run) {}
 
-  /// Computes the loads of all designs, and the measure of the motion. @throws as run_motion()
+  /// Computes the loads of all designs, and the number by which cycles are compared.
+  /// @param factors  scale factors of stiffness and mass of the cells, one entry per design
+  /// @throws as run_motion()
   mmc::CycleMotion loads(std::span<const fem::Factors> factors);
-  /// The motion on cells that compares cycles; empty where the motions that make loads do.
+  /// Returns the motion on cells by which cycles are compared. The result is empty if the motions
+  /// that supply the loads compare the cycles.
   mmc::VerificationMotion judge();
-  /// Keeps the last motion on cells, with its table, as that of the best design so far.
+  /// Stores the last motion on cells, with its table, as the motion of the best design so far.
   void keep_assessed();
 
-  /// The motion with the design of a run that optimizes nothing; the motion on cells of the best
-  /// design.
+  /// Returns the stored motions: the motion with the design if the run optimizes nothing, and the
+  /// motion on cells of the best design. It can be called once.
   MotionResults take_results() { return std::move(results_); }
-  /// CPU seconds of all motions so far.
+  /// Returns the CPU time of all motions so far [s].
   double seconds() const { return seconds_; }
 
  private:
@@ -57,10 +63,11 @@ class CycleMotions {
   std::optional<MotionRecord> last_on_cells_;
 };
 
-/// Computes the motions that assess designs: with the design, with uniform material of the same
-/// volume, and both on the mesh of [verify]. Those that `motions` holds already are kept.
-/// @param loads    of the last motion of the cycles
-/// @param motions  receives them as far as they were computed
+/// Computes the motions that assess designs: the motion with the design and the motion with uniform
+/// material of the same volume, and both motions again on the mesh of [verify] if the case has one.
+/// Motions with the design that `motions` already contains are not computed again.
+/// @param loads    loads of the last motion of the cycles
+/// @param motions  receives the motions as far as they were computed
 /// @return loads of the motion with the design
 /// @throws as run_motion()
 std::vector<fem::EslSets> assess_by_motion(const RunContext& run,

@@ -9,7 +9,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Round-off and the outline's own tolerance: not below by more than 1 %.
+/// Smallest accepted ratio of a width to the required width; it allows for round-off and for the
+/// tolerance of the outline.
 constexpr double kWithin = 0.99;
 
 void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> regions,
@@ -17,7 +18,7 @@ void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> region
   out.cell = std::min(problem.grid.dx(), problem.grid.dy());
   out.thickness =
       problem.widths.solid > 0 ? problem.widths.solid : 2 * problem.bands.back().min_half_thickness;
-  // Discs side by side are one place: the narrowest stands for them.
+  // Neighbouring inscribed discs belong to one location; only the narrowest disc is kept.
   for (const NarrowPlace& p :
        mmc::narrow_places_of(problem, regions, kWithin * std::max(out.cell, out.thickness))) {
     const double wanted = p.solid ? out.thickness : out.cell;

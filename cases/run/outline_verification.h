@@ -7,10 +7,11 @@
 
 namespace flexmorph::cases {
 
-/// Verifies the outline of a final design and writes its meshes, where there is a folder. A
-/// verification that fails says why; the run continues.
-/// @param loads  of the motion; null: the loads of a plate at rest
-/// @param go_on  asked on the way: false ends with the result of coarser meshes
+/// Verifies the outline of a final design by finite elements and writes its meshes if there is a
+/// folder. If the verification fails, the result contains the reason, and the run continues.
+/// @param loads   loads of the motion; null means the loads of a static plate
+/// @param go_on   cancellation callback; after false the result is that of the coarser meshes
+/// @param folder  receives the meshes; null means that nothing is written
 VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& problem,
                                   const fem::EslSets* loads, const std::function<bool()>& go_on,
                                   RunFolder* folder);

@@ -19,7 +19,7 @@ fem::StaticSettings settings_of(const StaticAnalysis& analysis) {
   return out;
 }
 
-/// Applies the loads and temperatures that do not grow along the path, in steps.
+/// Applies in steps the loads and temperatures that are constant along the path.
 void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
   const StaticAnalysis& analysis = *scene.statics;
   model.scale_loads(0);
@@ -35,7 +35,7 @@ void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
   model.choose_scaled(analysis.loads_grow, analysis.temperatures_grow);
 }
 
-/// Computes the rows of a path and hands its equilibria to the writers.
+/// Computes the rows of a path and passes its equilibria to the writers.
 class PathSteps {
  public:
   PathSteps(const Scene& scene, Mechanism& mechanism, const fem::State& start, RunFolder* folder,
@@ -50,7 +50,9 @@ class PathSteps {
         out_(out) {
     for (const Observe& o : scene.observed) {
       const Body& body = scene.body(o.body);
-      // A body with lines may still be in its hub; one without lines may be an arc.
+      // The pose gives the positions of a body with material lines, whose points may still be
+      // inside the hub. A body without material lines may be an arc, so its elements give the
+      // positions.
       starts_.push_back(body.row->lines ? start_pose(scene, body).place(o.point)
                                         : fem::point_position(model_.body(o.body), start, o.point));
     }
@@ -89,7 +91,7 @@ class PathSteps {
   VectorXd scales_, before_;
   BodyShapes shapes_;
   PathRecord& out_;
-  std::vector<Vec3> starts_;  // places of the observed points before the first step
+  std::vector<Vec3> starts_;  // positions of the observed points before the first step
   std::vector<double> row_;
   std::vector<std::unique_ptr<StepWriter>> writers_;
 };
@@ -120,7 +122,7 @@ PathRecord run_path(const PreparedCase& prepared, const PathRequest& request, Ru
     where.phase = "statics";
     const auto n = static_cast<int>(out.table.n_rows());
     where.load_factor = n == 0 ? 0 : out.table.at(kFactorColumn).back();
-    where.step = std::max(0, n - 1);  // the start is no step
+    where.step = std::max(0, n - 1);  // the first row is the start
     if (request.unfinished) *request.unfinished = std::move(out);
     throw FailedRun(error, where);
   } catch (...) {

@@ -10,17 +10,18 @@ namespace flexmorph::cases {
 
 /// Settings of a run along a path of equilibria.
 struct PathRequest {
-  bool condition = false;               ///< whether the condition of the last matrix is estimated
-  std::function<bool()> go_on;          ///< asked at every equilibrium; false interrupts
-  std::function<void(double)> reached;  ///< told the load factor of every equilibrium
-  /// Receives the rows of a path that fails or is interrupted; null: they are lost.
+  bool condition = false;       ///< True if the condition of the last matrix is estimated.
+  std::function<bool()> go_on;  ///< Cancellation callback of every equilibrium; false stops.
+  std::function<void(double)> reached;  ///< Callback with the load factor of every equilibrium.
+
+  /// Receives the rows of a path that fails or is interrupted; null means they are discarded.
   std::optional<PathRecord>* unfinished = nullptr;
 };
 
 /// Follows the equilibria of a [static] analysis from load factor 0.
-/// @param folder  receives path.csv, and with output.vtk a frame per equilibrium; null: nothing is
-///                written
-/// @throws FailedRun or Interrupted, with the equilibria before it in the table
+/// @param folder  receives path.csv, and with output.vtk a frame per equilibrium; null means that
+///                nothing is written
+/// @throws FailedRun or Interrupted; the equilibria before are in the table
 PathRecord run_path(const PreparedCase& prepared, const PathRequest& request,
                     RunFolder* folder = nullptr);
 

@@ -14,9 +14,9 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kTerminal = 0.1, kElsewhere = 30;  // seconds between lines
+constexpr double kTerminal = 0.1, kElsewhere = 30;  // time between lines [s]
 
-/// Of the terminal.
+/// Returns the number of columns of the terminal; 80 if it is unknown.
 int columns() {
   winsize size{};
   const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
@@ -78,12 +78,13 @@ void Progress::iteration(const mmc::IterationReport& r, double most) {
   ++all_;
   std::string text = "design of " + r.problem.body + ", cycle " + std::to_string(r.cycle) +
                      ": iteration " + std::to_string(r.iteration);
-  // With several bodies or cycles the run counts on where each begins anew.
+  // With several bodies or cycles, the total of the run is added in parentheses, because the number
+  // of the iteration restarts at 1 for every body and cycle.
   const bool alone = all_ == r.iteration;
   text += (alone ? " of at most " : " (" + io::to_text(all_) + " of at most ") + io::to_text(most) +
           (alone ? "" : ")");
   text += time_left(since_begin(), iterations_ / (iterations_ + most - all_));
-  // Goals without a compliance have none.
+  // The compliance is not finite if the goal contains none.
   if (std::isfinite(r.state.compliance()))
     text += ", compliance " + formatted("%.5g", r.state.compliance());
   text += ", volume " + formatted("%.4f", r.state.volume()) + ", kkt " +
@@ -110,7 +111,7 @@ Failure Progress::where() const {
 void Progress::line(const std::string& text, bool now) {
   if (quiet_ || (!terminal_ && !now)) return;
   if (terminal_) {
-    // A line that wraps could not be written over.
+    // The line is cut to the width of the terminal, because a wrapped line cannot be overwritten.
     const int width = columns() - 1;
     std::printf("\r%-*.*s", width, width, text.c_str());
     open_ = true;

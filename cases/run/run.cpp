@@ -19,7 +19,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// @param unfinished  receives the rows before a failure, where there is no folder with them
+/// Follows the path of equilibria of a [static] analysis.
+/// @param unfinished  receives the rows before a failure if there is no run folder
 PathRecord run_statics(const RunContext& run, std::optional<PathRecord>& unfinished) {
   const double to = run.scene().statics->to;
   run.progress.begin("statics");
@@ -38,7 +39,8 @@ PathRecord run_statics(const RunContext& run, std::optional<PathRecord>& unfinis
   return out;
 }
 
-/// @param unfinished  receives the rows before a failure, where there is no folder with them
+/// Computes the motion of a case without designs.
+/// @param unfinished  receives the rows before a failure if there is no run folder
 MotionRecord run_only_motion(const RunContext& run, std::optional<MotionRecord>& unfinished) {
   MotionRequest request = result_request(run, "motion");
   if (run.folder == nullptr) request.unfinished = &unfinished;
@@ -52,9 +54,9 @@ MotionRecord run_only_motion(const RunContext& run, std::optional<MotionRecord>&
   return out;
 }
 
-/// The exit code of the run in a folder that came to its end; nothing where there is something left
-/// to resume.
-/// @throws Error (input) when the run in the folder is that of another case.
+/// Returns the exit code of the complete run in a folder; nothing if there is no complete run, so
+/// that a run has to be started or resumed.
+/// @throws Error (input) if the run in the folder belongs to another case.
 std::optional<int> finished_with(const std::string& directory, const RunOptions& options,
                                  const io::CaseFile& file) {
   const std::string path = directory + "/run.json";
@@ -66,19 +68,20 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   const nlohmann::json run = nlohmann::json::parse(io::read_text(path));
   const std::string status = run.value("status", "");
   if (!status.starts_with("done")) return {};
-  bool missed = status != "done";  // of no use
+  bool missed = status != "done";  // "done, not usable"
   const nlohmann::json expect = run.value("expect", nlohmann::json::object());
   for (const auto& [name, expected] : expect.items())
     missed = missed || (!is_another_case(options.overrides) && !expected.value("holds", true));
   return missed ? kMissed : 0;
 }
 
-/// Does that for a run that was killed as soon as it was done.
+/// Removes the files that only resuming needs, from the folder of a complete run that was killed
+/// before it removed these files.
 void remove_progress_of_finished(const std::string& directory) {
   try {
     io::OutputFolder folder(directory, io::OutputFolder::Begin::go_on);
     remove_progress([&](const std::string& ending) { return folder.files_of(ending); });
-  } catch (const Error&) {  // taken, or not to be written: the files harm nobody
+  } catch (const Error&) {  // locked or read-only folder: the files may stay
   }
 }
 
@@ -115,7 +118,7 @@ EndedRun run_prepared(const RunContext& run) {
 
 int run_case(const RunOptions& options) {
   const RunFiles::Clock::time_point begin = RunFiles::Clock::now();
-  // What cannot be built, or is too large, is refused before a folder exists.
+  // A case that cannot be built or is too large is refused before a folder is created.
   const auto [file, prepared] = ready_case(options.case_name, options.overrides, options.directory);
   const Scene& scene = prepared.scene();
   std::string directory = options.directory;

@@ -8,25 +8,27 @@
 
 namespace flexmorph::cases {
 
-/// Runs a prepared case into its folder, as far as it gets. Status, warnings and expectations of
-/// the result are not yet filled. Where memory runs out the error is numerical: the estimate of
-/// resource_estimate.h is within a factor.
+/// Computes a prepared case, writes its files, and returns the results up to an error. Status,
+/// warnings and expectations of the result are not filled yet. If memory runs out, the error is
+/// numerical, because the resource estimate (resource_estimate.h) is only accurate to a factor.
 EndedRun run_prepared(const RunContext& run);
 
 /// Options of the command `run`.
 struct RunOptions {
-  std::string case_name;               ///< path, or name of a shipped case
-  std::string directory;               ///< of the run folder; empty: runs/<name>
-  std::vector<std::string> overrides;  ///< KEY=VALUE
-  int threads = 1;
-  bool quiet = false;
-  bool resume = false;     ///< whether a run of the same case in the folder is resumed
-  bool explain = false;    ///< whether the folder keeps the case with all its defaults
-  bool condition = false;  ///< whether conditions of matrices are estimated at the end
+  std::string case_name;               ///< Path of a case file, or name of a shipped case.
+  std::string directory;               ///< Run folder; empty means runs/<name>.
+  std::vector<std::string> overrides;  ///< Overrides of keys of the case, "KEY=VALUE".
+  int threads = 1;                     ///< Number of motions computed at the same time.
+  bool quiet = false;                  ///< True if only warnings and errors are printed.
+  bool resume = false;                 ///< True if a run of the same case in the folder is resumed.
+  bool explain = false;    ///< True if the folder receives the case with all its defaults.
+  bool condition = false;  ///< True if conditions of matrices are estimated at the end.
 };
 
-/// Runs a case from file to folder. @return exit code: 0 done, 4 interrupted (what was computed is
-/// kept), kMissed. @throws Error; a numerical one after the folder says what failed.
+/// Runs a case, from its file to its run folder.
+/// @return exit code: 0 for a complete run, 4 for an interrupted run (its results so far are
+///         written), or kMissed
+/// @throws Error; a numerical one is thrown after the failure is written into the folder
 int run_case(const RunOptions& options);
 
 }  // namespace flexmorph::cases

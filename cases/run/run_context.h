@@ -6,19 +6,21 @@
 
 namespace flexmorph::cases {
 
-/// What all parts of a run share.
+/// The case, the folder, the callbacks and the options that all stages of a run share.
 struct RunContext {
-  const PreparedCase& prepared;
-  RunFolder* folder;  ///< receives all files; null: no file is written
-  Progress& progress;
-  std::function<bool()> go_on;  ///< asked at every step and iteration; false interrupts the run
-  int threads = 1;
-  bool condition = false;  ///< whether conditions of matrices are estimated at the end
-  bool resume = false;     ///< whether the run resumes what is in its folder
-  bool uniform = true;     ///< whether motions with uniform material are computed
-  /// Told every design iteration, after it is written.
+  const PreparedCase& prepared;  ///< The case that is computed.
+  RunFolder* folder;             ///< Folder that receives all files; null means no files.
+  Progress& progress;            ///< Display that receives messages and progress.
+  std::function<bool()> go_on;   ///< Cancellation callback of steps and iterations; false stops.
+  int threads = 1;               ///< Number of motions computed at the same time.
+  bool condition = false;        ///< True if conditions of matrices are estimated at the end.
+  bool resume = false;           ///< True if the run resumes the run in its folder.
+  bool uniform = true;           ///< True if motions with uniform material are computed.
+
+  /// Callback that receives the report of every design iteration, after the iteration is written.
   std::function<void(const mmc::IterationReport&)> iteration{};
 
+  /// Returns the scene of the case.
   const Scene& scene() const { return prepared.scene(); }
 };
 

@@ -21,8 +21,9 @@ namespace {
 
 std::atomic<bool> interrupted = false;  // set by a signal, read by every motion
 
-/// CPU seconds of the phases of a run with designs: iterations, outlines of final designs, their
-/// post-processing and verification, motions; empty without designs.
+/// Returns the CPU times of the phases of a run with designs [s]: iterations, outlines of final
+/// designs, post-processing, motions, verification of outlines, and motions that assess designs.
+/// The result is empty without designs.
 Seconds phases_of(const DesignResult& design, const RunFolder& folder) {
   Seconds out = folder.phases();
   if (out.empty()) return out;
@@ -96,8 +97,9 @@ void RunFiles::write_failed(RunResult result, const std::string& why) {
 
 namespace {
 
-/// Writes the end of a run that failed or was interrupted.
-/// @return the exit code of an interrupted run. @throws the error of the run
+/// Writes the result of a run that failed or was interrupted.
+/// @return exit code of an interrupted run
+/// @throws the error of a failed run
 int end_early(EndedRun& ended, RunFiles& files, Progress& progress) {
   try {
     std::rethrow_exception(ended.error);
@@ -112,9 +114,9 @@ int end_early(EndedRun& ended, RunFiles& files, Progress& progress) {
   }
 }
 
-/// Writes the result of a run that came to its end.
-/// @throws Error (numerical) when a page or a picture cannot be written: the results are whole, and
-/// the run has failed
+/// Writes the result of a complete run.
+/// @throws Error (numerical) if a page or a picture cannot be written; then the run counts as
+///         failed, although its results are complete
 RunResult end_well(RunResult& result, RunFiles& files, Progress& progress) {
   try {
     return files.write(result, "done", "");
@@ -125,7 +127,8 @@ RunResult end_well(RunResult& result, RunFiles& files, Progress& progress) {
   }
 }
 
-/// Says warnings, missed expectations and where the report is. @return exit code
+/// Prints the warnings, the violated expectations and the path of the report.
+/// @return exit code of the run
 int say_end(const RunResult& result, bool is_case, Progress& progress, const std::string& path) {
   for (const Warning& each : result.warnings)
     progress.object(each.unusable ? "not usable" : "warning", each.words);

@@ -10,52 +10,57 @@
 #include "cases/results/run_result.h"
 #include "cases/run/progress.h"
 
-/// How runs end: by signals, by errors, or with their results written.
+/// The end of a run: after a signal, after an error, or with all results written.
 namespace flexmorph::cases {
 
-/// Exit code of a run that is whole, but misses an expectation of its case or is of no use.
+/// Exit code of a run that is complete, but violates an expectation of its case or is not usable.
 inline constexpr int kMissed = 5;
 
-/// Makes SIGINT, SIGTERM and SIGHUP end a run: it ends its step or iteration and writes what it
-/// has; a second one stops at once. A reader of the output that leaves ends no run.
+/// Installs handlers with which SIGINT, SIGTERM and SIGHUP end a run: the run completes its current
+/// step or iteration and writes its results. A second signal ends the process at once. SIGPIPE is
+/// ignored, so that a run continues when the reader of its output ends.
 void end_on_signals();
-/// Tells whether no such signal has come.
+/// Tells whether none of the signals of end_on_signals() was received.
 bool goes_on();
 
-/// Tells whether options make another case, of which [expect] does not speak.
+/// Tells whether overrides change the case, so that [expect] does not apply to it. Overrides of
+/// output and of expectations do not change the case.
 bool is_another_case(std::span<const std::string> overrides);
 
-/// Removes files that only resuming needs, of a run whose results are all written: until then a run
-/// that is killed can be resumed.
-/// @param files_of  paths of the files of the run whose names end so
+/// Removes the files that are needed only to resume a run. It is called when all results of the run
+/// are written, so that a run that is killed earlier can be resumed.
+/// @param files_of  returns the paths of the files of the run whose names have the given ending
 void remove_progress(
     const std::function<std::vector<std::string>(const std::string& ending)>& files_of);
 
-/// Fills what a result says of itself: status, warnings, expectations, CPU time and memory of the
-/// process.
-/// @param status  "done" becomes "done, not usable" where a warning says so
+/// Fills the general fields of a result: status, message, warnings, expectations, CPU time and peak
+/// memory of the process.
+/// @param status  "done" becomes "done, not usable" if a warning makes the result unusable
 void complete_result(const Scene& scene, const std::string& status, const std::string& message,
                      RunResult& result);
 
-/// Writes the files of a run in its folder that all runs have: at the start, and with the results.
+/// A writer of the files that every run has in its folder: run.json and the report.
 class RunFiles {
  public:
+  /// Clock by which the wall time of a run is measured.
   using Clock = std::chrono::steady_clock;
 
+  /// Creates the writer; the scene and the folder have to outlive it.
   /// @param begin  time at which the program began with the run
   RunFiles(const Scene& scene, RunFolder& folder, int threads, Clock::time_point begin)
       : scene_(scene), folder_(folder), threads_(threads), begin_(begin) {}
 
   /// Completes a result and writes it with its report.
-  /// @param status  "done" becomes "done, not usable" where a warning says so
+  /// @param status  "done" becomes "done, not usable" if a warning makes the result unusable
   /// @return the result as it was written
   /// @throws Error (numerical) when a file cannot be written
   RunResult write(RunResult result, const std::string& status, const std::string& message);
 
-  /// Writes the result of a run that failed. A full disk may refuse it: the first failure is the
-  /// one to tell.
+  /// Writes the result of a run that failed. Errors of writing, for example of a full disk, are
+  /// ignored, because the first failure is the one to report.
   void write_failed(RunResult result, const std::string& why);
 
+  /// Returns the folder of the run.
   RunFolder& folder() { return folder_; }
 
  private:
@@ -65,10 +70,11 @@ class RunFiles {
   Clock::time_point begin_;
 };
 
-/// Writes the results of a run and says its warnings, the expectations that it misses, and where
-/// its report is.
-/// @param is_case  whether expectations count: the case is as its file says
-/// @return exit code: 0 done, 4 interrupted (what was computed is written), kMissed
+/// Writes the results of a run and prints its warnings, the expectations that it violates, and the
+/// path of its report.
+/// @param is_case  true if expectations count, because no override changes the case
+/// @return exit code: 0 for a complete run, 4 for an interrupted run (its results so far are
+///         written), or kMissed
 /// @throws the error of the run, after its files; Error (numerical) when a file cannot be written
 int end_run(EndedRun ended, bool is_case, RunFiles& files, Progress& progress);
 

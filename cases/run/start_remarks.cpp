@@ -10,12 +10,13 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kSaid = 1e-9;  // less is round-off of assembly
-// What the differences leave that give the rates of a prestretched start, of the fastest.
+constexpr double kSaid = 1e-9;  // smallest reported difference, above round-off of assembly
+// Relative error, with respect to the largest velocity, of the finite differences that compute the
+// rates of a prestretched start.
 constexpr double kDifference = 1e-6;
-constexpr size_t kMost = 5;  // bodies that are named
+constexpr size_t kMost = 5;  // largest number of bodies that are named
 
-/// "a, b and 3 more".
+/// Returns a list of names for messages: "a, b and 3 more".
 std::string list_of(const std::vector<std::string>& all) {
   std::string out;
   for (size_t i = 0; i < std::min(all.size(), kMost); ++i) out += (i > 0 ? ", " : "") + all[i];
@@ -33,7 +34,9 @@ std::string moved_words(const RigidBody& body, const fem::FrameMotion& frame) {
   return out.empty() ? "" : "'" + body.name + "' " + out;
 }
 
-/// @param largest  grows to the largest difference to a given velocity of a point [m/s]
+/// Returns a message on velocities of a rigid body that differ from the given ones; empty if none
+/// does.
+/// @param largest  is increased to the largest difference from a given velocity of a point [m/s]
 std::string speed_words(const RigidBody& body, const fem::FrameMotion& frame, double& largest) {
   std::string out;
   if (body.velocity)

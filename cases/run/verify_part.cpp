@@ -20,12 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A part on the command line.
+/// A part that is given on the command line: the body and the path of the drawing.
 struct GivenPart {
   std::string body, path;
 };
 
-/// @throws Error (input) for what is not BODY=FILE, and a body that is named twice
+/// Reads the parts from the options.
+/// @throws Error (input) for an option that is not BODY=FILE, and for a repeated body
 std::vector<GivenPart> given_parts(const std::vector<std::string>& options) {
   std::vector<GivenPart> out;
   for (const std::string& each : options) {
@@ -41,27 +42,29 @@ std::vector<GivenPart> given_parts(const std::vector<std::string>& options) {
   return out;
 }
 
-/// A case, and the folder of the run whose designs it has; empty: there is none.
+/// The given case. `run` is the folder of the finished run from which its designs come; it is empty
+/// if the user gave a case.
 struct GivenCase {
   io::CaseFile file;
   Scene scene;
   std::string run;
 };
 
-/// Reads the case as it is verified: moving designs on their cells where it has no other [verify]
-/// and their cells can move.
+/// Reads the case for the verification. Designs of moving bodies are verified by a motion on their
+/// cells, unless the case has another [verify] or does not allow a motion on cells.
 Scene read_verified(const std::string& path, std::vector<std::string> changes) {
   Scene plain = read_scene(io::CaseFile(path, changes));
   if (plain.domain || plain.verify || plain.designs.empty()) return plain;
   changes.emplace_back("verify.cells=1");
   try {
     return read_scene(io::CaseFile(path, changes));
-  } catch (const Error&) {  // motion_notes() says so
+  } catch (const Error&) {  // motion_notes() reports that there is no motion on cells
     return plain;
   }
 }
 
-/// @throws Error (input) for a case that cannot be read, a folder that is no finished run
+/// Reads the given case or finished run and switches off optimization, corrections and certificate.
+/// @throws Error (input) for a case that cannot be read, or a folder without a finished run
 GivenCase given_case(const VerifyOptions& options) {
   const bool is_run = fs::is_directory(options.case_name);
   const std::string path = is_run ? finished_case(options.case_name) : find_case(options.case_name);
@@ -89,7 +92,7 @@ std::vector<std::string> bodies_of(const Scene& scene) {
   return out;
 }
 
-/// The scene with parts in place of designs.
+/// Returns the scene in which parts replace designs.
 /// @throws Error (input) for bodies without a design, parts that cannot be read, and designed
 ///         bodies that have neither a part nor a design
 Scene with_parts(const GivenCase& given, const std::vector<GivenPart>& parts) {
@@ -115,15 +118,15 @@ std::string directory_of(const VerifyOptions& options, const GivenCase& given) {
   constexpr const char* kEnding = "_verify";
   if (!given.run.empty()) {
     fs::path run = fs::path(given.run).lexically_normal();
-    if (!run.has_filename()) run = run.parent_path();  // "runs/arm/"
+    if (!run.has_filename()) run = run.parent_path();  // of "runs/arm/"
     return run.string() + kEnding;
   }
   const std::string& set = given.scene.output.directory;
   return (set.empty() ? "runs/" + given.scene.name : set) + kEnding;
 }
 
-/// Evaluates the design of the run in a folder of its own, without uniform material and without
-/// frames.
+/// Evaluates the design of the finished run in a separate folder, without uniform material and
+/// without frames.
 EndedRun evaluate_design(const GivenCase& given, const std::string& directory,
                          const VerifyOptions& options, Progress& progress) {
   Scene scene = given.scene;
@@ -145,7 +148,7 @@ EndedRun evaluate_design(const GivenCase& given, const std::string& directory,
   return out;
 }
 
-/// Copies the parts into the folder, and says where.
+/// Copies the drawings of the parts into the folder, and returns a comparison without numbers.
 PartComparison begin_comparison(const Scene& scene, const GivenCase& given,
                                 const std::vector<GivenPart>& parts, RunFolder& folder) {
   PartComparison out;
@@ -172,7 +175,7 @@ void write_numbers(const std::vector<ComparedNumber>& numbers, RunFolder& folder
     csv.row({n.body, n.name, n.unit, cell(n.part), cell(n.design), cell(n.uniform)});
 }
 
-/// Says all numbers, a line each.
+/// Prints the notes and all numbers, one line each.
 void say_numbers(const PartComparison& comparison, Progress& progress) {
   for (const std::string& each : comparison.notes) progress.say(each);
   const std::vector<std::vector<std::string>> rows = comparison_rows(comparison);

@@ -27,7 +27,7 @@ const io::Choice<bool> kDesign(
     io::key("accuracy", "design").otherwise("start").says("Designs as they start, or as they end."),
     "a design", {{"start", false}, {"optimized", true}});
 
-// Of all quantities, or of one.
+// Keys of [accuracy], which apply to all quantities, and of one [[accuracy.quantity]].
 const io::Choice<Interest::At> kAt(
     io::shared_key({"accuracy", "accuracy.quantity"}, "at")
         .number(io::not_negative("a time", "s"))
@@ -56,7 +56,7 @@ const Key& kSource = io::shared_key({kInAll, kInOne}, "source")
                          .text("where the reference comes from")
                          .says("Where it comes from.");
 
-/// Keys that several quantities may share, or each have for itself.
+/// Reads the keys that stand in [accuracy] for all quantities, or in one [[accuracy.quantity]].
 void read_shared(const Table& t, Interest& interest) {
   if (t.is_string(kAt)) {
     interest.at = t.choice(kAt);

@@ -2,7 +2,7 @@
 
 #include "io/case_files/case_file.h"
 
-/// Keys of [[body]] and [body.flow] that plates, beams and drives share.
+/// Keys of [[body]] and [body.flow] that the readers of plates, beams and drives share.
 namespace flexmorph::cases {
 
 struct Body;
@@ -17,16 +17,19 @@ extern const io::Key &kSpeed, &kLength, &kMesh, &kMaxLength, &kMinLength, &kStor
     &kStoredLength;
 }  // namespace flow_keys
 
-/// Declares the numbers that terms read: rows of another table, which is not there before main().
+/// Declares the keys of the numbers that terms read. They are declared on demand because the table
+/// of terms may not be initialized before main().
 void declare_term_keys();
 
-/// The row that `element` names.
+/// Returns the row that the key `element` of a [[body]] names.
 const ElementRow* read_element(const io::Table& t);
-/// Of bodies out of which no material flows.
+/// Throws if a body of a kind without material flow has a [body.flow].
+/// @throws Error (input) located in the file
 void refuse_flow(const io::Table& t);
 
-/// Density, Young's modulus, Poisson's ratio.
-/// @param has_density  without it the density does not matter: nothing moves and nothing weighs
+/// Reads density, Young's modulus and Poisson's ratio.
+/// @param has_density  false in a static analysis without gravity: the density then has no effect
+///                     and may be missing
 void read_material(const io::Table& t, bool has_density, Body& body);
 
 }  // namespace flexmorph::cases

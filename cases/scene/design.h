@@ -15,117 +15,146 @@
 #include "optim/mmc/loads/compliance_evaluator.h"
 #include "optim/mmc/problem/goal.h"
 
-/// [[design]], and what goes on around it.
+/// The designs of a case, [[design]], and the settings that belong to them: [esl], [cycle],
+/// [verify], [certificate].
 namespace flexmorph::cases {
 
-/// When the motion is turned into equivalent static loads, and what kind (fem/README.md, Equivalent
-/// static loads).
+/// Settings of the equivalent static loads that replace the motion in the design problem
+/// (fem/README.md, Equivalent static loads).
 struct Esl {
-  double every = 0;  ///< a load at every multiple of it up to the end [s]
-  mmc::ComplianceSettings settings;
+  double every = 0;  ///< Time between loads; a load is taken at every multiple up to the end [s].
+  mmc::ComplianceSettings settings;  ///< Definition of the loads and support of the plate.
 
-  int count(double end) const;  ///< number of loads up to `end`
+  /// Returns the number of loads up to the time `end` [s].
+  int count(double end) const;
 };
 
-/// A designed body that nothing clamps: joints hold it at two points.
+/// A designed body that is not welded at its root: joints hold it at two points.
 struct Link {
-  std::array<Vec2, 2> pins{};  ///< material points, at nodes of the design mesh [m]
-  /// Radii of the solid eyes around the pins, and of the bores in them; 0: none [m].
+  std::array<Vec2, 2> pins{};  ///< Material points of the joints, at nodes of the design mesh [m].
+
+  /// Radii of the solid eyes around the pins, and of the bores in the eyes [m]; 0: none.
   std::array<double, 2> eyes{}, bores{};
-  mmc::Support support = mmc::Support::pins;
+
+  mmc::Support support = mmc::Support::pins;  ///< Reactions or inertia that balance the loads.
 };
 
-/// The middle lines of its grid that a design is asked to be symmetric to.
+/// The symmetry that a case requests for a design, about middle lines of the grid.
 struct WantedSymmetry {
-  bool automatic = true;       ///< those that the scene and the start are symmetric to
-  bool x = false;              ///< the middle line that is parallel to the y axis
-  bool y = false;              ///< the middle line that is parallel to the x axis
-  bool despite_loads = false;  ///< loads need not be symmetric
+  bool automatic = true;       ///< True: symmetric as far as the scene and the initial layout are.
+  bool x = false;              ///< True: mirrored at the middle line parallel to the y axis.
+  bool y = false;              ///< True: mirrored at the middle line parallel to the x axis.
+  bool despite_loads = false;  ///< True if the loads need not be symmetric.
 
+  /// Returns true if all settings are equal.
   bool operator==(const WantedSymmetry&) const = default;
 };
 
-/// The design of one body, on its design domain: the body at its longest.
+/// The design of one body. The design domain is the body at its longest.
 struct BodyDesign {
-  std::string body;
-  std::optional<Link> link;             ///< absent where a hub or a rigid body carries its root
-  Grid grid;                            ///< X from the root (0) to the free end, Y across [m]
-  std::array<int, 2> components{1, 1};  ///< boxes of the initial layout, two components in each
-  mmc::Goal goal;                       ///< volumes are fractions, solid regions included
-  mmc::Goal motion_goal;                ///< of the motion itself, see Cycle::correct
-  bool asks_motion = false;             ///< does the case name numbers of the motion?
-  double min_thickness = 0;             ///< c_min: smallest half-thickness of a component [m]
-  Widths widths;                        ///< smallest widths of the union [m]; 0: any
-  double fillet_radius = 0;             ///< at inner corners of the part [m]; 0: none
-  double half_length = 0;               ///< of the initial components [m]
-  double half_thickness = 0;            ///< of the initial components [m]
-  /// Half-widths of the Heaviside band, coarse to fine [cells]; of tdf = "paper" [-].
+  std::string body;                     ///< Name of the designed body, or of the [domain].
+  std::optional<Link> link;             ///< Pins of a link; absent if the root is welded.
+  Grid grid;                            ///< Design mesh: X from the root (0), Y across [m].
+  std::array<int, 2> components{1, 1};  ///< Boxes of two components each, along and across.
+
+  /// Objective and limits of the design for loads. Volumes are fractions that include solid
+  /// regions.
+  mmc::Goal goal;
+  /// Objective and limits of the motion itself, see Cycle::correction.
+  mmc::Goal motion_goal;
+
+  bool asks_motion = false;   ///< True if the case names responses of the motion itself.
+  double min_thickness = 0;   ///< Lower bound c_min of the half-thickness of components [m].
+  Widths widths;              ///< Smallest widths of material and gaps of the union [m]; 0: any.
+  double fillet_radius = 0;   ///< Radius of fillets at inner corners of the part [m]; 0: none.
+  double half_length = 0;     ///< Half-length of the initial components [m].
+  double half_thickness = 0;  ///< Half-thickness of the initial components [m].
+
+  /// Half-widths of the Heaviside band from coarse to fine, in cells; of tdf = "paper" [-].
   std::vector<double> band;
-  TdfSettings tdf;               ///< in metres, with the last, finest band
-  double erosion = 0;            ///< depth of the eroded design in stage 2 [m]
-  double stiffness_void = 1e-4;  ///< stiffness factor of the void in dynamics [-]
-  double mass_void = 1e-3;       ///< mass factor of the void in dynamics [-]
-  std::vector<Component> start;  ///< empty: boxes of two crossing components
-  double jitter = 0;             ///< of the initial components, in parts of their sizes [-]
-  int seed = 1;                  ///< of the jitter
-  int starts = 1;                ///< this one, and others that are jittered
-  WantedSymmetry symmetry;
-  bool shares_mass = false;  ///< with the other designs that do: see mmc::SharedProblem
-  /// Polygons; a cell belongs to a region that holds its centre [m].
+
+  TdfSettings tdf;               ///< Topology description function with the finest band [m].
+  double erosion = 0;            ///< Depth of the erosion in stage 2 [m]; of tdf = "paper" [-].
+  double stiffness_void = 1e-4;  ///< Stiffness scale factor of the void in motions [-].
+  double mass_void = 1e-3;       ///< Mass scale factor of the void in motions [-].
+  std::vector<Component> start;  ///< Initial components; empty: two crossing ones in every box.
+  double jitter = 0;  ///< Random change of the initial components, relative to their size [-].
+  int seed = 1;       ///< Seed of the random numbers of the jitter.
+  int starts = 1;     ///< Number of initial layouts: this one, and further jittered ones.
+  WantedSymmetry symmetry;   ///< Requested symmetry.
+  bool shares_mass = false;  ///< True if designs share one budget of mass (mmc::SharedProblem).
+
+  /// Solid and void regions as polygons [m]; a cell belongs to a region that contains its centre.
   std::vector<std::vector<Vec2>> solid, empty;
-  /// Outline of a part that is verified in place of the components [m]; absent: components.
+  /// Outline of a part that is verified in place of the components [m]; absent: the components.
   std::optional<std::vector<Region>> part;
 
+  /// Returns the number of initial components.
   int n_components() const {
     return start.empty() ? 2 * components[0] * components[1] : static_cast<int>(start.size());
   }
-  /// Settings at one band of the continuation, without erosion.
+  /// Returns the settings of the topology description function with one band of the continuation.
+  /// The band is in metres, except of tdf = "paper".
   TdfSettings at_band(size_t index) const;
 };
 
 struct Scene;
 
-/// The plate that is designed; that of a static scene weighs nothing unless its domain has a
+/// Returns the plate of a design. The plate of a static scene has no weight unless its domain has a
 /// density.
 mmc::Plate plate_of(const Scene& scene, const BodyDesign& design);
 
-/// How far exported curves may be off the outlines of a design [m]: `output.tolerance`; where it is
-/// not given, a 200th of `min_feature`, or of a cell a 100th where features may have any size.
+/// Returns the allowed deviation of exported curves from the outlines of a design [m]:
+/// `output.tolerance`. If it is not given, it is 1/200 of `min_feature`, or 1/100 of a cell where
+/// features may have any width.
 double export_tolerance(const Scene& scene, const BodyDesign& design);
 
-/// The measures of a motion that cycles are compared by.
+/// Measure of a motion by which cycles are compared: strain energy over time, or the deflection of
+/// a point as its root mean square, its peak-to-peak value or its mean.
 enum class CycleMeasure { strain_energy, rms, peak_to_peak, mean };
 
+/// The cycles of motion, equivalent static loads and design: [cycle].
 struct Cycle {
-  int max_cycles = 6;
-  double tolerance = 0.01;  ///< cycles end when one improves the measure by less than this part
-  double load_difference = mmc::LoadDifference::kLargest;  ///< see mmc::LoopSettings
-  CycleMeasure compare_by = CycleMeasure::strain_energy;
-  /// "BODY" of its tip, "BODY.NAME" of an observed point; empty with strain_energy.
+  int max_cycles = 6;       ///< Limit of the number of cycles.
+  double tolerance = 0.01;  ///< Cycles end when one improves the measure by a smaller fraction [-].
+
+  /// Cycles end when loads differ by a smaller fraction, see mmc::LoopSettings [-].
+  double load_difference = mmc::LoadDifference::kLargest;
+
+  CycleMeasure compare_by = CycleMeasure::strain_energy;  ///< Measure that compares cycles.
+
+  /// Point of the deflection: "BODY" for its tip, "BODY.NAME" for an observed point; empty with
+  /// strain_energy.
   std::string compare_point;
-  /// What follows the cycles of equivalent static loads: see mmc::correct_designs().
+
+  /// Correction of the designs after the cycles of equivalent static loads, see
+  /// mmc::correct_designs().
   mmc::CorrectionSettings correction;
-  double cell = 0;      ///< of the motions that correct [m]; 0: the designs' own
-  double step = 0;      ///< of them [s]
-  int checkpoints = 0;  ///< see fem::GradientSettings
+
+  double cell = 0;      ///< Cell of the motions of the correction [m]; 0: cells of the designs.
+  double step = 0;      ///< Time step of the motions of the correction [s].
+  int checkpoints = 0;  ///< Number of checkpoints, see fem::GradientSettings.
 };
 
-/// What the motion itself says of the final designs, see mmc::MotionCertificate.
+/// Settings of the optimality certificate of the final designs, see mmc::MotionCertificate:
+/// [certificate].
 struct Certify {
-  double cell = 0;      ///< of its motion [m]; 0: the designs' own
-  double step = 0;      ///< [s]
-  int checkpoints = 0;  ///< see fem::GradientSettings
+  double cell = 0;      ///< Cell of its motion [m]; 0: cells of the designs.
+  double step = 0;      ///< Time step of its motion [s].
+  int checkpoints = 0;  ///< Number of checkpoints, see fem::GradientSettings.
 };
 
-/// One more dynamic run of the final design on a finer mesh; the limits of flowing elements
-/// shrink with the elements.
+/// One more dynamic run of the final design, on a finer mesh or on the cells of the designs:
+/// [verify]. Limits of the element length at moving roots are scaled with the elements. Exactly one
+/// of `mesh`, `refine` and `cells` is used.
 struct Verify {
-  std::optional<std::array<int, 2>> mesh;  ///< elements along the length at the start, and across
-  int refine = 1;                          ///< or so many times those of every body
-  int cells = 0;    ///< or the cells of the designs, each in so many parts each way; 0: not these
-  double step = 0;  ///< [s]
+  std::optional<std::array<int, 2>> mesh;  ///< Elements along the length at the start, and across.
+  int refine = 1;   ///< Refinement factor of all elements in each direction; used without `mesh`.
+  int cells = 0;    ///< Elements per cell of the designs in each direction; 0: not on cells.
+  double step = 0;  ///< Time step [s].
 
-  std::string words() const;  ///< "20 x 4 elements"
+  /// Returns a text about the mesh, such as "20 x 4 elements".
+  std::string words() const;
 };
 
 }  // namespace flexmorph::cases

@@ -6,48 +6,55 @@
 #include "geometry/components/outline.h"
 #include "geometry/disc.h"
 
-/// [domain], [[support]], [[load]]: a plate at rest.
+/// A static scene, which consists of one plate: [domain], [[support]], [[load]].
 namespace flexmorph::cases {
 
-/// Where a plate at rest is held or pulled.
+/// A location where a static plate is supported or loaded.
 struct Place {
+  /// Kind of a location: an edge of the bounding box, a point, or the nodes in a box or disc.
   enum class Kind { edge, point, box, disc };
-  Kind kind = Kind::point;
-  Box box;    ///< an edge is a box without width; of a disc the box around it [m]
-  Disc disc;  ///< of its kind: the rim of a bore that it matches, otherwise all within
+  Kind kind = Kind::point;  ///< Kind of this location.
+
+  /// Bounding box of the location [m]; it has no width for an edge, and no size for a point.
+  Box box;
+
+  /// Disc of Kind::disc [m]: it stands for the rim of a bore that it matches, otherwise for all
+  /// nodes inside.
+  Disc disc;
 };
 
+/// A support of a static plate.
 struct PlaneSupport {
-  Place place;
-  bool x = false, y = false;  ///< held directions
+  Place place;                ///< Location of the supported nodes.
+  bool x = false, y = false;  ///< True if displacements in x (in y) are held at zero.
 };
 
-/// A force and a moment on a place.
+/// A force and a moment on a static plate.
 struct PlaneForce {
-  Place place;
-  Vec2 force{0, 0};      ///< in all [N]
-  double moment = 0;     ///< in all, counterclockwise [N m]
-  bool bearing = false;  ///< whether a pin presses the force on half of a bore, else it is even
+  Place place;           ///< Location of the loaded nodes.
+  Vec2 force{0, 0};      ///< Resultant force [N].
+  double moment = 0;     ///< Moment about the middle of the location, counterclockwise [N m].
+  bool bearing = false;  ///< True if a pin presses on half of a bore; false: evenly spread force.
 };
 
-/// Forces that act at the same time.
+/// A set of forces that act at the same time.
 struct LoadCase {
-  std::string name;
-  double weight = 1;
-  std::vector<PlaneForce> forces;
+  std::string name;                ///< Name of the load case in tables.
+  double weight = 1;               ///< Weight of its compliance in the sum [-].
+  std::vector<PlaneForce> forces;  ///< Forces of the load case.
 };
 
-/// A plate at rest: what a static scene has instead of bodies that move.
+/// The plate of a static scene, which takes the place of moving bodies.
 struct Domain {
-  std::string name;
-  Box bounds;                 ///< of the design mesh [m]
-  Region shape;               ///< the domain within; without an outer ring: all of it
-  double thickness = 1;       ///< [m]
-  double youngs_modulus = 1;  ///< [Pa]
-  double poisson_ratio = 0.3;
-  double density = 0;  ///< [kg/m^3], 0: it has none, and no mass
-  std::vector<PlaneSupport> supports;
-  std::vector<LoadCase> loads;
+  std::string name;                    ///< Name of the plate in file names.
+  Box bounds;                          ///< Bounding box, which the design mesh covers [m].
+  Region shape;                        ///< Shape of the plate [m]; no outer ring: all of `bounds`.
+  double thickness = 1;                ///< Thickness of the plate [m].
+  double youngs_modulus = 1;           ///< Young's modulus [Pa].
+  double poisson_ratio = 0.3;          ///< Poisson's ratio [-].
+  double density = 0;                  ///< Density [kg/m^3]; 0: neither mass nor weight is defined.
+  std::vector<PlaneSupport> supports;  ///< Supports of the plate.
+  std::vector<LoadCase> loads;         ///< Load cases of the plate.
 };
 
 }  // namespace flexmorph::cases

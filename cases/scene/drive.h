@@ -7,33 +7,39 @@
 
 #include "fem/element.h"
 
-/// [[drive]], [trajectory], and what follows drives.
+/// Prescribed functions of time of a case: [[drive]] and [trajectory].
 namespace flexmorph::cases {
 
-/// A motion: the name of a drive, or where there is none a constant.
+/// A prescribed quantity: a drive, or a constant where no drive is named.
 struct Law {
-  std::string drive;
-  double value = 0;
+  std::string drive;  ///< Name of the drive; empty for a constant.
+  double value = 0;   ///< Value of the constant; not used with a drive.
 };
 
-/// A function of time that a case gives a name.
+/// A function of time that a case defines under a name.
 struct Drive {
-  std::string name;
-  std::string words;  ///< as the case says it: the formula, or where the table comes from
-  /// Beyond the run's time it goes on as the parabola of value, rate and acceleration at its end.
+  std::string name;   ///< Name by which the case refers to the drive.
+  std::string words;  ///< Text for summaries: the formula, or the source of the table.
+
+  /// Value, rate and acceleration at a time [s]. Outside of the time span of the run the function
+  /// is continued by the parabola of value, rate and acceleration at the nearer end.
   std::function<fem::Motion(double)> motion;
-  std::vector<double> kinks;  ///< in (0, end]: first times of other branches of its formula [s]
-  std::string jump;           ///< the first jump of value or rate, in words; empty: there is none
-  /// Of a coordinate of a curve: where its parameter ends, which takes the place of time. It drives
-  /// nothing but `path` joints, and its kinks are no times.
+
+  std::vector<double> kinks;  ///< Times in (0, end] at which the formula changes branches [s].
+  std::string jump;           ///< Text about the first jump of value or rate; empty if none.
+
+  /// End of the parameter of a coordinate of a curve, which replaces time; absent for a function
+  /// of time. Only `path` joints use such a drive, and its `kinks` are empty.
   std::optional<double> until;
-  bool from_trajectory = false;  ///< what the trajectory's body needs of it (follow_trajectory())
+
+  /// True if inverse kinematics determines the drive from the trajectory (follow_trajectory()).
+  bool from_trajectory = false;
 };
 
-/// The path of a rigid body that drives with from = "trajectory" follow from.
+/// The prescribed path of a rigid body. Drives with from = "trajectory" are determined from it.
 struct Trajectory {
-  std::string body;
-  Law x, y, angle;  ///< of the body's point and axis
+  std::string body;  ///< Name of the rigid body.
+  Law x, y, angle;   ///< Position of the origin of the body's axes [m] and their angle [rad].
 };
 
 }  // namespace flexmorph::cases

@@ -73,7 +73,8 @@ Constants read_constants(const Table& root) {
   return out;
 }
 
-/// A function that is known in [0, end] only: beyond, its parabola goes on.
+/// Returns a function that is defined in [0, end] and is continued outside by the parabola of
+/// value, rate and acceleration at the nearer end.
 template <class Function>
 std::function<fem::Motion(double)> over_run(Function function, double end) {
   return [function = std::move(function), end](double t) {
@@ -85,7 +86,8 @@ std::function<fem::Motion(double)> over_run(Function function, double end) {
   };
 }
 
-/// What a reader of formulas or tables says, without the text that the place in the file shows.
+/// Throws the error of a reader of formulas or tables again, located at a key. The text of the
+/// formula is removed from the message, because the location shows it.
 [[noreturn]] void pass_on(const Table& t, const Key& key, const Error& error,
                           const std::string& text = "") {
   std::string words = error.what();
@@ -200,7 +202,7 @@ void refuse_curve(const Table& t, const Key& key, const Scene& scene, const std:
       t.fail(key, "the drive '" + drive + "' is a coordinate of a curve (`until`), not of time");
 }
 
-/// The value where the rate changes its sign between a and b.
+/// Returns the value at the point between a and b where the rate changes its sign, by bisection.
 double extreme(const std::function<fem::Motion(double)>& motion, double a, double b) {
   const bool rises = motion(a).rate > 0;
   for (int k = 0; k < 100 && b - a > 1e-15 * std::abs(b); ++k) {

@@ -36,8 +36,8 @@ const io::Key& kMinLength = io::key("body.line", "min_length")
                                 .when("`max_length` is given")
                                 .says("A shorter one is merged with its neighbour.");
 
-/// Limits of the element next to a free root line; two halves that were just split must not be
-/// merged again.
+/// Reads the limits of the length of the element next to a free root line. They are checked so that
+/// the two halves of an element that was just split are not merged again.
 void read_limits(const Table& t, const Body& body, BodyLine& line) {
   const io::Key& key = t.has(kMaxLength) ? kMaxLength : kMinLength;
   if (!line.free || line.index != 0)

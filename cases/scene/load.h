@@ -12,53 +12,61 @@
 #include "geometry/base.h"
 #include "io/case_files/case_file.h"
 
-/// [[load]] on bodies that move.
+/// The loads on moving bodies: [[load]].
 namespace flexmorph::cases {
 
 struct Body;
 struct LoadRow;
 struct Scene;
 
+/// An entry of [[load]] on a moving body.
 struct BodyLoad {
-  const LoadRow* row = nullptr;
-  std::string body;
-  std::string edge;
-  Vec2 point{0, 0};       ///< material, or in the axes of a rigid body [m]
-  fem::LoadLaw law{0.0};  ///< in the unit of the row: (dim) of a force, (1) of others
-  VectorXd force;         ///< (dim), at the start; empty: no force
-  double size = 0;        ///< of a load that is no force, at the start
-  bool turns = false;     ///< is the force along axes that turn with the body?
+  const LoadRow* row = nullptr;  ///< Kind of the load.
+  std::string body;              ///< Name of the loaded body.
+  std::string edge;              ///< Name of the loaded edge; empty: no edge is loaded.
+  Vec2 point{0, 0};              ///< Material point, or location in the axes of a rigid body [m].
+  fem::LoadLaw law{0.0};         ///< Force (dim), else magnitude (1), in the unit of the row.
+  VectorXd force;                ///< Force at the start (dim); empty: the load is no force.
+  double size = 0;               ///< Magnitude at the start of a load that is no force.
+  bool turns = false;  ///< True if force components refer to axes that turn with the body.
 };
 
-/// A row of the table of loads: all that the program knows of one kind (loads.cpp).
+/// A row of the table of loads: everything that is specific to one kind of load (loads.cpp).
 struct LoadRow {
-  const char* name;      ///< as cases say it: type = "point"
-  const char* sentence;  ///< what it does
-  const char* words;     ///< of summaries: "force along"; its edge follows
-  bool at_point = false, at_edge = false;
-  bool follows = false;   ///< is no force, turns with the body and has no energy
-  bool in_space = false;  ///< of plates in space only
-  bool in_plane = false;  ///< never there
-  bool on_plates = true, on_beams = false;
-  const io::Key& key;  ///< of its size, per point, length or area
+  const char* name;      ///< Name in case files: type = "point".
+  const char* sentence;  ///< Sentence that describes the load.
+  const char* words;     ///< Text for summaries, such as "force along"; the edge follows it.
+  bool at_point = false, at_edge = false;  ///< True if it acts at a point (on an edge).
+
+  /// True if the load is no force vector: it turns with the body and has no potential energy.
+  bool follows = false;
+
+  bool in_space = false;                    ///< True if it acts on plates in space only.
+  bool in_plane = false;                    ///< True if it acts on bodies in the plane only.
+  bool on_plates = true, on_beams = false;  ///< True if it acts on plates (on beams).
+  const io::Key& key;                       ///< Key of its magnitude, per point, length or area.
+
+  /// Creates the term of a loaded plate or beam.
   std::unique_ptr<fem::Term> (*make)(const BodyLoad& load, const Body& body);
-  /// The same on a rigid body; null where there is none.
+  /// Creates the force element of a loaded rigid body; null if the load does not act on them.
   std::unique_ptr<fem::Link> (*on_rigid)(const BodyLoad& load, const std::string& name) = nullptr;
-  /// What equivalent static loads make of a force that does not turn: at a point, or along the free
-  /// end; nothing where they know no such load. @param longest  length of the body's design domain
-  /// [m]
+  /// Returns the force that equivalent static loads contain for a load that does not turn with the
+  /// body: a force at a point or along the free end. Returns nothing if equivalent static loads do
+  /// not include such a load; null means that they never do.
+  /// @param longest  length of the body's design domain [m]
   std::optional<fem::AttachedForce> (*attached)(const BodyLoad& load, const VectorXd& force,
                                                 const Body& body, double longest) = nullptr;
 };
 
-/// All rows, in the order in which messages list them.
+/// Returns all rows, in the order in which messages list them.
 std::span<const LoadRow* const> load_rows();
 
-/// What equivalent static loads make of it at a time, see LoadRow::attached.
+/// Returns the force that equivalent static loads contain for a load at a time t [s], see
+/// LoadRow::attached; nothing for loads that turn with the body.
 std::optional<fem::AttachedForce> attached_force(const BodyLoad& load, const Scene& scene,
                                                  double t);
 
-/// [[load]].
+/// Reads the loads on moving bodies: [[load]].
 void read_loads(const io::Table& root, Scene& scene);
 
 }  // namespace flexmorph::cases

@@ -81,7 +81,8 @@ const LoadRow kSurfaceForce = {.name = "surface",
                                                 : fem::make_surface_load(l.law);
                                }};
 
-/// Spread over the height: the resultant is on the axis.
+/// The force per length is spread over the height of the beam, so that its resultant is on the
+/// axis.
 const LoadRow kLineForce = {.name = "line",
                             .sentence = "A force per length along all of a beam.",
                             .words = "force per length",
@@ -156,7 +157,8 @@ const io::Key& kEdge = io::key("load", "edge")
                            .when("edge, edge_moment")
                            .says("An edge, or an m-line of a mesh that stays: `line 3`.");
 
-/// The name of a body that such a load acts on; rigid ones are known to some.
+/// Reads the name of the loaded body. Returns true for a rigid body, which only some kinds of loads
+/// accept.
 bool is_on_rigid_body(const Table& t, const Scene& scene, BodyLoad& load) {
   const std::vector<std::string> rigid = names_of(scene.rigid_bodies);
   if (load.row->on_rigid && t.says_one_of(kBody, rigid)) {

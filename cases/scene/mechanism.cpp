@@ -62,7 +62,7 @@ const Key& kPathAngle = io::key("trajectory", "angle")
                             .otherwise(0.0)
                             .says("Of its first axis.");
 
-/// Mass, and the inertia that is given or that of a box of even material.
+/// Reads a [[rigid_body]]. If the inertia is not given, it follows from a uniform rectangle.
 RigidBody read_rigid_body(const Table& t, const Scene& scene) {
   RigidBody body;
   body.name = read_name(t, kName, scene);
@@ -124,7 +124,7 @@ void read_trajectory(const Table& root, const Follow& follow, Scene& scene) {
   for (const Law* law : {&path.x, &path.y, &path.angle})
     if (scene.follows_trajectory(*law)) t.fail("the path itself cannot follow from the trajectory");
   scene.trajectory = path;
-  Scene draft = scene;  // joints are read again once lengths are known
+  Scene draft = scene;  // the final joints are read when lengths are known
   draft.joints = read_joint_list(root, scene);
   try {
     follow(draft);

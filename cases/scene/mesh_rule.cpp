@@ -14,19 +14,21 @@ using io::Key;
 using io::Table;
 using io::to_text;
 
-/// The key that says how long the body is.
+/// Returns the key that determines the length of the body.
 const Key& length_key(const Flow& flow) {
   return flow.motion ? flow_keys::kLength : flow_keys::kSpeed;
 }
 
-/// Elements of an even mesh: none is longer than max_length when the body is longest.
+/// Returns the number of elements of a uniform mesh, so that none is longer than max_length when
+/// the body is longest.
 int even_elements(const Body& body, double end) {
   if (!(body.flow->max_length > 0)) return body.elements[0];
   const double needed = std::ceil(body.longest(end) / body.flow->max_length - 1e-9);
   return static_cast<int>(std::max<double>(body.elements[0], std::min(needed, 1e6)));
 }
 
-/// Does an even mesh keep to the limits, with some of the body outside at all times?
+/// Returns true if a uniform mesh keeps the limits, and if part of the body is always outside of
+/// the hub.
 bool can_be_even(const Body& body, double end) {
   return body.shortest(end) > 0 &&
          body.shortest(end) / even_elements(body, end) >= body.flow->min_length * (1 - 1e-9);
@@ -52,8 +54,9 @@ void set_even_mesh(const Table& t, Body& body, double end) {
   body.elements[0] = count;
 }
 
-/// Limits of the boundary element. They must not chatter: two halves that were just split must
-/// not be short enough to be merged again, nor a merged element long enough to be split.
+/// Sets the limits of the boundary element. They must not lead to alternating splits and merges:
+/// the two halves of an element that was just split must not be short enough to be merged again,
+/// and a merged element must not be long enough to be split.
 void set_split_mesh(const Table& t, Body& body, double end) {
   Flow& flow = *body.flow;
   if (!t.has(flow_keys::kMaxLength))
@@ -73,7 +76,7 @@ void set_split_mesh(const Table& t, Body& body, double end) {
     t.fail(min_key, "the elements are " + to_text(element, 4) +
                         " m long at the start, shorter than min_length = " +
                         to_text(flow.min_length, 4) + " m, and would be merged at once");
-  // Elements of the start are merged only where the body gets shorter than it was.
+  // Elements of the initial mesh are merged only if the body becomes shorter than at the start.
   const double neighbour = shortest < body.length * (1 - 1e-12)
                                ? std::max(element, 0.5 * flow.max_length)
                                : 0.5 * flow.max_length;
@@ -85,8 +88,8 @@ void set_split_mesh(const Table& t, Body& body, double end) {
                                  " m are left at " + (flow.motion ? "its shortest" : "time.end"));
 }
 
-/// Does a load, a spring, a joint or a mass act at a place of a body besides its welded edges?
-/// Terms and markers of such a place refuse elements whose lines move.
+/// Returns true if a load, a spring, a joint or a mass acts on a body elsewhere than at its welded
+/// edges. Terms and markers at such a location do not support elements whose lines move.
 bool is_held_inside(const Scene& scene, const std::string& body) {
   const auto at = [&](const Anchor& anchor) { return anchor.body == body; };
   return std::ranges::any_of(scene.loads, [&](const BodyLoad& l) { return l.body == body; }) ||
@@ -103,7 +106,7 @@ bool is_held_inside(const Scene& scene, const std::string& body) {
 
 void settle_mesh(const Table& body_table, const Scene& scene, Body& body) {
   constexpr double kLargestChange = 4;
-  if (body.on_cells()) return;  // they lie where they lie in the design
+  if (body.on_cells()) return;  // cells keep their locations in the design
   const Table t = body_table.table(body_keys::kFlow);
   const double end = scene.time.end;
   if (!t.has(flow_keys::kMesh)) {

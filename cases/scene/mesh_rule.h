@@ -5,12 +5,13 @@
 
 namespace flexmorph::cases {
 
-/// Settles how the mesh of a body follows its length, and its number of elements. Where the case
-/// does not say it, the mesh is even where the length changes by less than a factor of four,
-/// elements keep to min_length, and nothing acts on places of the body that its lines would pass;
-/// else lines come and go.
+/// Determines how the mesh of a body follows its changing length, and its number of elements. If
+/// the case does not give `mesh`, the mesh stays uniform ("even") where the length changes by less
+/// than a factor of four, no element becomes shorter than min_length, and no load, spring, joint or
+/// mass acts inside of the body, where moving lines would pass it; otherwise lines are inserted and
+/// removed ("split").
 /// @param body_table  [[body]], with a [body.flow]
-/// @param scene       all of it read
+/// @param scene       with all of the motion read
 /// @throws Error (input) for limits that the mesh cannot keep.
 void settle_mesh(const io::Table& body_table, const Scene& scene, Body& body);
 

@@ -72,7 +72,8 @@ const io::Key& kSpinUp = io::key("time", "spin_up")
                              .when("`start = \"hub_at_rest\"`")
                              .says("How long hubs take to their angular velocity.");
 
-/// A number, or "adaptive" with what belongs to it; the integrator is read.
+/// Reads the time step: a number, or "adaptive" with its tolerance and its largest step. The
+/// integrator must be read before.
 void read_step(const Table& t, TimeSpan& time) {
   time.step = std::min(1e-3, time.end);
   if (t.is_string(kStep)) {
@@ -93,7 +94,8 @@ void read_step(const Table& t, TimeSpan& time) {
     t.fail(kTolerance, "only step = \"adaptive\" and \"minimal_coordinates\" have one");
   time.step = t.number(kStep, time.step);
   if (time.step > time.end) t.fail(kStep, "a time step is no longer than time.end [s]");
-  // Here, and not with all that is counted: nobody looks at drives over such a time.
+  // Checked here and not with the resource estimate, because drives are evaluated over the whole
+  // time span before.
   if (const double steps = time.end / time.step; steps > kMostSteps)
     t.fail(t.has(kStep) ? kStep : kEnd,
            io::to_text(steps, 3) + " steps; the most are " + io::to_text(kMostSteps, 3));
@@ -131,7 +133,7 @@ const io::Key& kAngularVelocity = io::key("hub", "angular_velocity")
                                       .otherwise_as("`angle` is a drive, or the analysis [static]")
                                       .says("How fast it turns.");
 
-/// A drive says itself how it starts.
+/// Throws if a hub is driven and spun up at the same time, because a drive prescribes the start.
 void refuse_spin_up(const Table& t, const Key& key, const Scene& scene) {
   if (scene.time.start == Start::hub_at_rest)
     t.fail(key,
@@ -139,7 +141,7 @@ void refuse_spin_up(const Table& t, const Key& key, const Scene& scene) {
            "driven ones");
 }
 
-/// Two numbers, or the names of two drives.
+/// Reads the position of a hub: two numbers, or the names of two drives.
 void read_position(const Table& t, const Scene& scene, Hub& hub) {
   if (t.is_list_of_strings(kHubPosition)) {
     refuse_spin_up(t, kHubPosition, scene);
@@ -192,7 +194,7 @@ Body read_body(const Table& t, const Scene& scene, bool has_gravity) {
   Body body;
   body.name = read_name(t, kBodyName, scene);
   body.row = read_element(t);
-  // Nothing at rest asks for the density but weight.
+  // In a static analysis only the weight needs the density.
   body.row->read(t, scene, !scene.statics || has_gravity, body);
   if (t.has(kBodyPosition)) {
     const auto at = t.numbers(kBodyPosition);
@@ -239,7 +241,7 @@ void read_point_mass(const Table& t, Scene& scene) {
   scene.point_masses.push_back(mass);
 }
 
-/// [time], or [static] in its place.
+/// Reads [time], or [static] in its place.
 void read_span(const Table& root, Scene& scene) {
   if (!root.has(tables::kStatic)) {
     scene.time = read_time(root.table(tables::kTime));
@@ -253,7 +255,7 @@ void read_span(const Table& root, Scene& scene) {
   scene.statics = read_analysis(root.table(tables::kStatic));
 }
 
-/// Does the start fit what the scene turned out to be?
+/// Checks that the initial state suits the scene, and determines it where the case leaves it open.
 void settle_start(const Table& root, Scene& scene) {
   const Table time = root.table(tables::kTime);
   if (scene.is_mechanism() && scene.time.start == Start::hub_at_rest)
@@ -271,7 +273,8 @@ void settle_start(const Table& root, Scene& scene) {
   if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
     time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
                                scene.time.integrator + "\" does not know them");
-  // Without a hub there is nothing to be stretched by, and a free line starts where it is put.
+  // Without a hub no prescribed rotation stretches the bodies, and a free line starts at its given
+  // location.
   const bool in_hubs = !scene.hubs.empty() && !scene.has_free_lines();
   if (!scene.is_mechanism() && !in_hubs && scene.time.start == Start::prestretched)
     time.fail(kStart, "\"prestretched\" is for bodies in hubs whose lines are not free");

@@ -9,7 +9,7 @@ using io::Table;
 
 namespace {
 
-constexpr size_t kLongestName = 64;  // names become parts of those of files
+constexpr size_t kLongestName = 64;  // because names become parts of file names
 
 }  // namespace
 

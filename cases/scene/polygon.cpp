@@ -10,7 +10,7 @@ std::vector<Vec2> read_polygon(const io::Table& t, const io::Key& key) {
   const std::vector<double> flat = t.numbers(key);
   if (flat.size() < 6 || flat.size() % 2 != 0)
     t.fail(key, "three corners or more: x0, y0, x1, y1, x2, y2, ... [m]");
-  constexpr double kFarthest = 1e30;  // a plate of any use, in any unit; products stay finite
+  constexpr double kFarthest = 1e30;  // [m]; far beyond any plate, and products stay finite
   for (const double x : flat)
     if (std::abs(x) > kFarthest) t.fail(key, "coordinates are at most 1e30 m");
   std::vector<Vec2> ring;

@@ -4,7 +4,7 @@
 #include "cases/scene/measure.h"
 #include "cases/scene/tables.h"
 
-/// [[observe]] and [[measure]].
+/// Readers of [[observe]] and [[measure]].
 namespace flexmorph::cases {
 namespace {
 

@@ -7,37 +7,39 @@
 #include "geometry/base.h"
 #include "io/drawings/length_unit.h"
 
-/// What a run shows, and what it must reproduce.
+/// The output of a run, and the results that it is expected to have.
 namespace flexmorph::cases {
 
-/// Quantities of a body that are results, see BodyMeasures.
+/// Quantities of a body that are written as results ([[measure]]), see BodyMeasures.
 struct Measure {
-  std::string body;
-  std::vector<std::string> quantities;
+  std::string body;                     ///< Name of the measured body.
+  std::vector<std::string> quantities;  ///< Names out of measured_quantities().
 };
 
-/// A material point whose position is a result.
+/// A material point whose position is written as a result ([[observe]]).
 struct Observe {
-  std::string name, body;
-  Vec2 point{0, 0};  ///< material [m]
+  std::string name, body;  ///< Name of the point, and name of its body.
+  Vec2 point{0, 0};        ///< Material coordinates of the point [m].
 };
 
+/// The output of a run: [output].
 struct Output {
-  std::string directory;    ///< empty: chosen by the command line
-  int design_every = 1;     ///< design iterations between VTK files, 0: none
-  double motion_every = 0;  ///< time between VTK files of the motion [s], 0: none
-  int sharp_every = 25;     ///< iterations between sharp evaluations, 0: the final design only
-  bool vtk = true, plots = true;
-  io::LengthUnit unit = io::kMillimetre;  ///< of exported drawings and solids
-  double tolerance = 0;  ///< of exported curves [m]; 0: not given, see export_tolerance()
+  std::string directory;    ///< Run folder; empty: the command line chooses it.
+  int design_every = 1;     ///< Design iterations between VTK files; 0: none are written.
+  double motion_every = 0;  ///< Time between VTK files of the motion [s]; 0: none are written.
+  int sharp_every = 25;     ///< Iterations between crisp evaluations; 0: final design only.
+  bool vtk = true, plots = true;          ///< True if VTK files (plots) are written.
+  io::LengthUnit unit = io::kMillimetre;  ///< Unit of length of exported drawings and solids.
+  double tolerance = 0;  ///< Tolerance of exported curves [m]; 0: see export_tolerance().
 };
 
-/// A number the run must reproduce: value with a tolerance, or bounds.
+/// A number that a run must reproduce: a value with a tolerance, bounds, or both.
 struct Expectation {
-  std::optional<double> value, at_least, at_most;
-  double tolerance = 0;  ///< absolute, around `value`
-  std::string place;     ///< file and line, for messages
+  std::optional<double> value, at_least, at_most;  ///< Value, lower bound and upper bound.
+  double tolerance = 0;                            ///< Absolute tolerance of `value`.
+  std::string place;                               ///< File and line, for messages.
 
+  /// Returns true if a number satisfies the value and the bounds; NaN never does.
   bool holds(double found) const;
 };
 

@@ -6,37 +6,48 @@
 
 #include "geometry/base.h"
 
-/// [[rigid_body]], and places on bodies.
+/// The rigid bodies of a case, [[rigid_body]], and locations on bodies.
 namespace flexmorph::cases {
 
-/// A place on a body, or on the ground.
+/// A location on a body or on the ground, with the direction of an axis.
 struct Anchor {
-  std::string body;   ///< empty: the ground
-  Vec2 point{0, 0};   ///< in the axes of a rigid body or the ground; material point of a plate [m]
-  double angle = 0;   ///< of its first axis in those axes [rad]
-  bool given = true;  ///< false: where the other anchor of the joint is at the start
+  std::string body;  ///< Name of the body; empty for the ground.
 
+  /// Location in the axes of the rigid body or of the ground; of a plate or beam the material point
+  /// [m].
+  Vec2 point{0, 0};
+
+  double angle = 0;  ///< Angle of the first axis of the anchor in the axes of the body [rad].
+
+  /// True if the case gives the point; if false, it is where the other anchor of the joint is at
+  /// the start.
+  bool given = true;
+
+  /// Returns true if the anchor is on the ground.
   bool on_ground() const { return body.empty(); }
 };
 
-/// A rigid body in the plane; its axes lie at `position`, turned by `angle`, at the start.
+/// A rigid body in the plane. At the start its axes have the origin `position` and the angle
+/// `angle`.
 struct RigidBody {
-  std::string name;
-  double mass = 0;                         ///< [kg]
-  double inertia = 0;                      ///< about the centre of mass [kg m^2]
-  Vec2 center{0, 0};                       ///< of mass, in the axes of the body [m]
-  Vec2 size{0, 0};                         ///< of the rectangle around it that is drawn [m]
-  Vec2 position{0, 0};                     ///< of the axes; a guess where joints say more [m]
-  double angle = 0;                        ///< likewise [rad]
-  std::optional<Vec2> velocity;            ///< of the axes at the start, where given [m/s]
-  std::optional<double> angular_velocity;  ///< likewise [rad/s]
-  bool is_placed = false;                  ///< is `position` or `angle` in the case?
-  std::string place;                       ///< in the case: "cases/four_bar.toml:14"
+  std::string name;                        ///< Name by which joints and tables refer to the body.
+  double mass = 0;                         ///< Mass without `masses` [kg].
+  double inertia = 0;                      ///< Moment of inertia about `center` [kg m^2].
+  Vec2 center{0, 0};                       ///< Centre of mass in the axes of the body [m].
+  Vec2 size{0, 0};                         ///< Sides of the rectangle drawn around `center` [m].
+  Vec2 position{0, 0};                     ///< Origin of the axes; a guess with joints [m].
+  double angle = 0;                        ///< Angle of the axes; a guess with joints [rad].
+  std::optional<Vec2> velocity;            ///< Velocity of the origin at the start, if given [m/s].
+  std::optional<double> angular_velocity;  ///< Angular velocity at the start, if given [rad/s].
+  bool is_placed = false;                  ///< True if the case gives `position` or `angle`.
+  std::string place;                       ///< Place in the file: "cases/four_bar.toml:14".
+
+  /// A point mass that is fixed to the rigid body.
   struct AddedMass {
-    double mass = 0;   ///< [kg]
-    Vec2 point{0, 0};  ///< in the axes of the body [m]
+    double mass = 0;   ///< Mass of the point mass [kg].
+    Vec2 point{0, 0};  ///< Location in the axes of the body [m].
   };
-  std::vector<AddedMass> masses;  ///< [[point_mass]] on it, no part of the others
+  std::vector<AddedMass> masses;  ///< Point masses ([[point_mass]]), not included in `mass`.
 };
 
 }  // namespace flexmorph::cases

@@ -88,10 +88,10 @@ Output read_output(const io::Table& t) {
   return output;
 }
 
-/// Vertices of polygons grow with the root of 1/tolerance, and curves that are off by more than a
-/// cell are another design.
+/// Checks the tolerance of exported curves. The number of vertices of polygons grows with
+/// 1/√tolerance, and curves with an error of more than a cell do not represent the design.
 void check_tolerance(const io::Table& t, const Scene& scene) {
-  constexpr double kSmallest = 1e-4;  // cells
+  constexpr double kSmallest = 1e-4;  // [cells]
   if (!t.has(kTolerance)) return;
   for (const BodyDesign& design : scene.designs) {
     const double cell = std::min(design.grid.dx(), design.grid.dy());
@@ -141,7 +141,7 @@ TdfSettings BodyDesign::at_band(size_t index) const {
 int Esl::count(double end) const { return static_cast<int>(std::floor(end / every + 1e-6)); }
 
 bool Expectation::holds(double found) const {
-  // Written so that NaN holds nowhere.
+  // NaN never satisfies an expectation.
   return !std::isnan(found) && (!value || std::abs(found - *value) <= tolerance) &&
          (!at_least || found >= *at_least) && (!at_most || found <= *at_most);
 }

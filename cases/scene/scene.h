@@ -23,73 +23,85 @@
 #include "io/case_files/case_file.h"
 #include "optim/optimizer.h"
 
-/// What a case file says, as plain data. Nobody else reads the case file; what a case does not
-/// list is absent here too (empty lists, empty optionals), not zero.
+/// The contents of a case file as plain data. The rest of the program uses these data and does not
+/// read the case file. Items that a case does not contain are absent here (empty lists, empty
+/// optionals) and not zero.
 namespace flexmorph::cases {
 
+/// The contents of a case file: a motion, a static analysis, or a static scene with one plate; its
+/// designs; and its output.
 struct Scene {
-  std::string name;  ///< of the case file, without folder and ending
-  std::string title;
-  std::optional<Domain> domain;  ///< a static scene: nothing moves, all that follows is absent
-  TimeSpan time;
-  std::optional<StaticAnalysis> statics;  ///< bodies at rest under growing loads: no time
-  std::optional<VectorXd> gravity;        ///< (dim), at the start [m/s^2]
-  std::vector<Law> gravity_laws;          ///< its entries; empty as well where nothing weighs
-  std::vector<Drive> drives;
-  std::vector<Hub> hubs;
-  std::vector<RigidBody> rigid_bodies;
-  std::vector<Body> bodies;
-  std::vector<Joint> joints;
-  std::vector<Spring> springs;
-  std::optional<Trajectory> trajectory;
-  std::vector<PointMass> point_masses;
-  std::vector<BodyLoad> loads;
-  std::vector<Observe> observed;
-  std::vector<Measure> measures;
-  std::optional<Esl> esl;           ///< always there when bodies that move are designed
-  std::vector<BodyDesign> designs;  ///< one per designed body
-  optim::Settings optimizer;
-  Cycle cycle;
-  std::optional<Verify> verify;
-  std::optional<Certify> certify;
-  Output output;
-  std::optional<Accuracy> accuracy;           ///< for the command of that name; no run needs it
-  std::map<std::string, Expectation> expect;  ///< by name of the result
-  std::optional<io::CaseFile> file;           ///< where it comes from, for messages; none: made
+  std::string name;              ///< Name of the case file, without folder and extension.
+  std::string title;             ///< Title of the case.
+  std::optional<Domain> domain;  ///< Plate of a static scene, which has no bodies and no motion.
+  TimeSpan time;                 ///< Time span and time integration of the motion.
+  std::optional<StaticAnalysis> statics;  ///< Static analysis in place of a motion.
+  std::optional<VectorXd> gravity;        ///< Gravity at the start (dim) [m/s^2]; absent: none.
+  std::vector<Law> gravity_laws;          ///< Components of gravity (dim) [m/s^2]; empty: none.
+  std::vector<Drive> drives;              ///< Named functions of time.
+  std::vector<Hub> hubs;                 ///< Rigid frames with prescribed motion that carry bodies.
+  std::vector<RigidBody> rigid_bodies;   ///< Rigid bodies.
+  std::vector<Body> bodies;              ///< Plates and beams.
+  std::vector<Joint> joints;             ///< Joints, in the order of the case.
+  std::vector<Spring> springs;           ///< Springs and dampers.
+  std::optional<Trajectory> trajectory;  ///< Path of a rigid body that drives follow from.
+  std::vector<PointMass> point_masses;   ///< Point masses on plates and beams.
+  std::vector<BodyLoad> loads;           ///< Loads on moving bodies.
+  std::vector<Observe> observed;         ///< Material points whose positions are written.
+  std::vector<Measure> measures;         ///< Measured quantities of bodies.
+  std::optional<Esl> esl;  ///< Equivalent static loads; present if moving bodies are designed.
+  std::vector<BodyDesign> designs;   ///< Designs, one per designed body.
+  optim::Settings optimizer;         ///< Settings of the optimizer.
+  Cycle cycle;                       ///< Cycles of motion and design.
+  std::optional<Verify> verify;      ///< Verification of the final design by another motion.
+  std::optional<Certify> certify;    ///< Optimality certificate of the final design.
+  Output output;                     ///< Output of the run.
+  std::optional<Accuracy> accuracy;  ///< Input of the command `accuracy`; runs ignore it.
+  std::map<std::string, Expectation> expect;  ///< Expected results by their names.
+  std::optional<io::CaseFile>
+      file;  ///< Case file, for messages; absent for a scene made in memory.
 
-  const Body& body(const std::string& name) const;  ///< name resolves: checked when read
-  /// A law in time; drives that follow from a trajectory: after follow_trajectory().
+  /// Returns the plate or beam of this name. @throws Error (input) if there is none
+  const Body& body(const std::string& name) const;
+  /// Returns a law as a function of time. For a drive that follows from a trajectory,
+  /// follow_trajectory() must have been called.
   std::function<fem::Motion(double)> motion_of(const Law& law) const;
-  /// Components of a load or of gravity in time.
+  /// Returns the components of a load or of gravity as functions of time.
   fem::LoadLaw load_law(std::span<const Law> laws) const;
-  /// Gravity in time; of size 0 where nothing weighs.
+  /// Returns gravity as a function of time [m/s^2]; of size 0 without gravity.
   fem::LoadLaw gravity_law() const { return load_law(gravity_laws); }
+  /// Returns true if a law names a drive that follows from the trajectory.
   bool follows_trajectory(const Law& law) const;
-  /// Do joints say where its bodies are, not hubs and places alone? The rigid kinematic model finds
-  /// out.
+  /// Returns true if joints determine the locations of bodies, rather than hubs and given positions
+  /// alone. The rigid kinematic model then computes the locations.
   bool is_mechanism() const {
     return !rigid_bodies.empty() || std::any_of(joints.begin(), joints.end(),
                                                 [](const Joint& j) { return j.joins_edges(); });
   }
-  bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }  ///< all, or none
+  /// Returns true if the plates are in space; either all bodies are in space or none is.
+  bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }
+  /// Returns true if a body has a material line whose material coordinate is an unknown.
   bool has_free_lines() const;
+  /// Returns true if a body is heated.
   bool has_heat() const;
-  /// Are designs judged by motions on their cells?
+  /// Returns true if designs are verified by motions on the cells of the designs.
   bool judges_on_cells() const { return verify && verify->cells > 0; }
+  /// Throws an error that is located in the case file.
   /// @param key_path  see io::CaseFile::where(): "body.plate.elements"
   /// @throws Error (input): "<file:line:column>: <path> = <value>: <why>"
   [[noreturn]] void refuse(const std::string& key_path, const std::string& why) const;
 };
 
-/// Fills the drives that follow from the trajectory of a scene read as far as its joints: a job for
-/// those who know mechanisms (assembly/rigid_kinematics.h); here it is only asked.
+/// A function that computes the drives that follow from the trajectory of a scene, which is read as
+/// far as its joints. It is implemented in assembly/rigid_kinematics.h and passed to read_scene().
 using Follow = std::function<void(Scene&)>;
 
-/// Changes of the command line by which the case finds its files from any folder.
+/// Returns overrides "KEY=VALUE" that replace all file names in a case by absolute paths, so that
+/// the case can be read from any folder.
 std::vector<std::string> overrides_of_files(const io::CaseFile& file);
 
-/// Reads and checks a case: types, ranges, names, and what must fit together. Keys nobody knows
-/// are errors.
+/// Reads a case and checks its types, ranges, names and consistency. Unknown keys are errors.
+/// @param follow  computes the drives that follow from a trajectory
 /// @throws Error (input) located in the file, see io::Table.
 Scene read_scene(const io::CaseFile& file, const Follow& follow);
 

@@ -26,7 +26,7 @@ const io::Key& rest_key(const char* name, io::Quantity quantity, const char* typ
       .says("Where it pulls and pushes nothing.");
 }
 
-/// One stiffness, one damping and where both are at rest.
+/// Reads a stiffness, a damping, and the length or angle without force.
 void read_numbers(const Table& t, const io::Key& stiffness, const io::Key& damping,
                   const io::Key& rest, Spring& spring) {
   spring.stiffness = t.number(stiffness);
@@ -89,7 +89,7 @@ const io::Key& kName =
         .otherwise_as("`spring` and its number")
         .says("What messages call it; with one its forces are columns of motion.csv.");
 
-/// Is b a plate or a beam?
+/// Returns true if b is a plate or a beam.
 bool is_flexible(const Table& t, const Scene& scene) {
   const std::vector<std::string> flexible = names_of(scene.bodies);
   std::vector<std::string> known = names_of(scene.rigid_bodies);
@@ -99,7 +99,7 @@ bool is_flexible(const Table& t, const Scene& scene) {
   return std::find(flexible.begin(), flexible.end(), name) != flexible.end();
 }
 
-/// Both places; of two axes that of b may be none's where it is a point of a plate.
+/// Reads both anchors. If the row does not need the axis of b, b may be a point of a plate or beam.
 void read_places(const Table& t, const Scene& scene, const SpringRow& row, Spring& spring) {
   if (!row.axes || row.needs_axis_b) {
     const auto [a, b] = read_anchors(t, scene, row.points, row.axes);

@@ -141,7 +141,8 @@ void read_shape(const Table& t, Domain& domain) {
   domain.bounds = bounds_of(domain.shape.outer);
 }
 
-/// Where something holds or pulls: an edge of the domain's bounding box, a point, a box or a disc.
+/// Reads the location of a support or a force: an edge of the bounding box of the domain, a point,
+/// a box or a disc.
 Place read_place(const Table& t, const Domain& domain) {
   const int given = t.has(kEdge) + t.has(kPoint) + t.has(kBox) + t.has(kDisc);
   if (given != 1) t.fail("a place is one of `edge`, `point`, `box`, `disc`");
@@ -207,7 +208,7 @@ LoadCase read_load(const Table& t, const Domain& domain) {
   load.name = t.string(kLoadName, "load_" + std::to_string(domain.loads.size() + 1));
   for (const LoadCase& other : domain.loads)
     if (other.name == load.name) {
-      // A name that a load has without being asked may be taken as well.
+      // A default name may be taken, too.
       const std::string taken = "there is another load '" + load.name + "'";
       t.has(kLoadName) ? t.fail(kLoadName, taken) : t.fail(taken);
     }
@@ -217,7 +218,7 @@ LoadCase read_load(const Table& t, const Domain& domain) {
   return load;
 }
 
-/// Self weight acts in every load case; without one it is a load case by itself.
+/// Reads gravity. The weight acts in every load case; if there is none, it becomes a load case.
 void read_weight(const Table& root, Domain& domain, Scene& scene) {
   scene.gravity_laws = read_load_laws(root, tables::kGravity.counted(2), scene);
   if (scene.gravity_law().varies())

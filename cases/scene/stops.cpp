@@ -13,7 +13,7 @@ using Coordinate = fem::StopData::Coordinate;
 const char* const kLengths = "stop, distance_stop";
 const char* const kAngles = "angle_stop";
 
-/// The numbers of a stop in metres or in radians.
+/// Keys of the numbers of a stop, in metres or in radians.
 struct StopKeys {
   const Key &least, &most, &stiffness, &damping, &onset;
 };

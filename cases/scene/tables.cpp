@@ -3,12 +3,12 @@
 namespace flexmorph::cases::tables {
 namespace {
 
-/// A table that a case has or has not.
+/// Declares a table that a case may contain once.
 io::Key& one(const char* name, const char* absence = "absent") {
   return io::key("", name).table().otherwise_as(absence);
 }
 
-/// Entries of a list.
+/// Declares a list of tables.
 io::Key& many(const char* name) { return io::key("", name).tables_of().otherwise_as("none"); }
 
 constexpr const char* kDefaults = "all its defaults";

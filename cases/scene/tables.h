@@ -5,15 +5,17 @@
 
 #include "io/case_files/key.h"
 
-/// The tables at the top of a case file. Their keys are declared beside the code that reads them.
+/// The tables at the top level of a case file. The keys of each table are declared in the source
+/// file that reads them.
 namespace flexmorph::cases::tables {
 
 extern const io::Key &kConstants, &kTime, &kStatic, &kDrive, &kHub, &kRigidBody, &kBody, &kJoint,
     &kSpring, &kTrajectory, &kPointMass, &kLoad, &kObserve, &kMeasure, &kDomain, &kSupport, &kEsl,
     &kDesign, &kOptimizer, &kCycle, &kVerify, &kCertificate, &kOutput, &kAccuracy, &kExpect;
-extern const io::Key& kGravity;  // no table, but at the top, too
+extern const io::Key& kGravity;  // a key at the top level that is not a table
 
-/// All tables ("" is the file itself, "body.flow" a table in a table), as people read about them.
+/// Returns the names of all tables in the order in which the reference lists them. "" is the file
+/// itself, and "body.flow" is a table inside [[body]].
 const std::vector<std::string>& order();
 
 }  // namespace flexmorph::cases::tables

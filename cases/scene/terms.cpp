@@ -5,13 +5,13 @@
 #include "cases/scene/elements/row.h"
 #include "cases/scene/read.h"
 
-/// The terms of a body, and the numbers that they take from it.
+/// The terms of a body, and the numbers of the body that they need.
 namespace flexmorph::cases {
 namespace {
 
 using io::Key;
 
-/// The number that a term reads, as a key of [[body]].
+/// Declares a number that a term needs as a key of [[body]].
 const Key& declared(const fem::TermKey& key, const std::string& term) {
   Key& out = io::key("body", key.name).when("the term `" + term + "`").says(key.sentence);
   if (key.whole) {
@@ -26,8 +26,8 @@ const Key& declared(const fem::TermKey& key, const std::string& term) {
 
 using TermKeys = std::map<std::string, std::map<std::string, const Key*>>;
 
-/// Returns the keys of all terms, by term and name; those of terms that were registered since the
-/// last call are declared.
+/// Returns the keys of all terms, by term and name. The keys of terms that were registered since
+/// the last call are declared here.
 const TermKeys& term_keys() {
   static TermKeys all;
   static std::mutex lock;

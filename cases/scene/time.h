@@ -6,43 +6,54 @@
 
 #include "fem/solve/statics.h"
 
-/// [time] and [static].
+/// The time span of a motion, [time], and the static analysis, [static].
 namespace flexmorph::cases {
 
-/// How a driven scene starts (fem/README.md, Starts).
+/// Initial state of a driven scene (fem/README.md, Starts). A hub is a rigid frame with prescribed
+/// motion that carries a body.
 enum class Start {
-  automatic,     ///< equilibrium at rest where nothing moves at the start, else steady
-  prestretched,  ///< velocity of the rigid, extending body, in equilibrium in the turning frame:
-                 ///< in hubs under -ω² x alone
-  steady,      ///< in equilibrium under all inertia forces of the rigid motion, and moving with it
-  rigid,       ///< the same velocity, unstrained: sets off axial ringing
-  hub_at_rest  ///< smooth spin-up of the hub from rest
+  /// Static equilibrium where all prescribed velocities are zero at the start, else `steady`.
+  automatic,
+  /// Velocities of the rigid, extending body, in equilibrium under the inertia forces of this
+  /// motion; in hubs under the centrifugal acceleration -ω² x alone.
+  prestretched,
+  /// Equilibrium under all inertia forces of the rigid motion, with the velocities of this
+  /// equilibrium.
+  steady,
+  /// Velocities of the rigid, extending body, unstrained; axial vibrations follow.
+  rigid,
+  /// Smooth spin-up of the hubs from zero angular velocity.
+  hub_at_rest
 };
 
-/// Steps of a motion or a path are counted in an int.
+/// Largest number of steps of a motion or a path; steps are counted in an int.
 constexpr double kMostSteps = std::numeric_limits<int>::max();
 
+/// The time span and the time integration of a motion.
 struct TimeSpan {
-  double end = 1;      ///< [s], from 0
-  double step = 1e-3;  ///< [s]; not of adaptive steps
-  /// Steps that adapt to this tolerance (fem::AdaptiveStep); absent: equal ones.
-  std::optional<double> tolerance;
-  double largest_step = 0;                       ///< of adaptive steps [s]; 0: the default
-  std::string integrator = "generalized_alpha";  ///< see fem::make_integrator()
-  double explicit_tolerance = 1e-8;              ///< of the steps of `minimal_coordinates`
-  double rho_inf = 0.8;  ///< spectral radius of generalized-alpha at infinite frequency, 0..1
-  Start start = Start::automatic;
-  double spin_up = 0;  ///< duration of the spin-up [s], 0 unless `hub_at_rest`
+  double end = 1;                   ///< End of the run, which begins at 0 [s].
+  double step = 1e-3;               ///< Time step [s]; not used with adaptive steps.
+  std::optional<double> tolerance;  ///< Tolerance of fem::AdaptiveStep; absent: equal steps.
+  double largest_step = 0;          ///< Limit of adaptive steps [s]; 0: the default.
+  std::string integrator = "generalized_alpha";  ///< Name for fem::make_integrator().
+  double explicit_tolerance = 1e-8;  ///< Tolerance of local errors of `minimal_coordinates`.
+  double rho_inf = 0.8;  ///< Spectral radius of generalized-alpha at infinite frequency, 0..1.
+  Start start = Start::automatic;  ///< Initial state.
+  double spin_up = 0;              ///< Duration of the spin-up [s]; 0 unless `hub_at_rest`.
 };
 
-/// Nonlinear statics of the bodies, in place of a motion.
+/// A nonlinear static analysis of the bodies, which takes the place of a motion.
 struct StaticAnalysis {
+  /// Path method: steps of the load factor, or steps along the arc length.
   fem::StaticSettings::Path path = fem::StaticSettings::Path::load;
-  double to = 1;            ///< load factor at the end, from 0
-  int steps = 10;           ///< equal steps to there; arc_length: the first step is one of them
-  int max_steps = 1000;     ///< equilibria before the analysis gives up
-  int max_iterations = 15;  ///< of Newton's method in a step
-  /// What the load factor multiplies; the other one is there as it is from the start.
+
+  double to = 1;         ///< Load factor at the end of the path, which begins at 0 [-].
+  int steps = 10;        ///< Number of equal steps; with arc_length it sizes the first step only.
+  int max_steps = 1000;  ///< Number of equilibria after which the analysis fails.
+  int max_iterations = 15;  ///< Limit of Newton iterations in a step.
+
+  /// True if the load factor multiplies the loads (the temperatures). Loads or temperatures that it
+  /// does not multiply act in full from the start.
   bool loads_grow = true, temperatures_grow = false;
 };
 

@@ -6,10 +6,10 @@
 
 namespace flexmorph::cases {
 
-extern const char* const kVersion;      ///< of Flexmorph: "0.1.0"
-extern const char* const kCasesFolder;  ///< of the shipped cases in the source tree
+extern const char* const kVersion;      ///< Version of Flexmorph, such as "0.1.0".
+extern const char* const kCasesFolder;  ///< Folder of the shipped cases in the source tree.
 
-/// Names and versions of the libraries Flexmorph was built with.
+/// Returns the names and versions of the libraries that Flexmorph was built with.
 std::vector<std::pair<std::string, std::string>> library_versions();
 
 }  // namespace flexmorph::cases

@@ -11,6 +11,7 @@ namespace {
 using io::to_text;
 using Table = std::vector<std::vector<std::string>>;
 
+/// The colour and the meaning of a verdict.
 struct Legend {
   Verdict verdict;
   const char *color, *meaning;
@@ -44,7 +45,8 @@ std::string summary(std::span<const StabilityRow> rows) {
   return out;
 }
 
-/// @param max_reason  number of characters of the last column
+/// Returns the table of all rows.
+/// @param max_reason  largest number of characters of the last column
 Table table_of(std::span<const StabilityRow> rows, size_t max_reason) {
   Table out = {{"case", "suite", "parameter", "verdict", "exit"}};
   out[0].insert(out[0].end(), kRunNumbers.begin(), kRunNumbers.end());
@@ -63,7 +65,7 @@ Table table_of(std::span<const StabilityRow> rows, size_t max_reason) {
   return out;
 }
 
-/// Returns the index of a value in a list, to which it is added where it is missing.
+/// Returns the index of a value in a list, and appends the value if it is missing.
 double index_in(std::vector<std::string>& list, const std::string& value) {
   const auto at = std::find(list.begin(), list.end(), value);
   const auto index = at - list.begin();
@@ -83,7 +85,7 @@ std::string rectangle(double x, double y, double width, double height, const std
          "\" height=\"" + to_text(height) + "\" fill=\"" + fill + "\"/>\n";
 }
 
-/// Returns the coloured cell of a run; its tool tip holds the reason.
+/// Returns the coloured cell of a run; its tool tip contains the reason of the verdict.
 std::string cell_at(double x, double y, const StabilityRow& row) {
   const auto& [defect, position, velocity, newton, rejected, condition, area] =
       row.assessment.numbers;

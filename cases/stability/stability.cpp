@@ -16,9 +16,9 @@ namespace flexmorph::cases {
 namespace {
 
 constexpr size_t kRowsBetweenWrites = 10;
-constexpr double kMemoryLimit = 4e9;  // of a run [bytes]
+constexpr double kMemoryLimit = 4e9;  // memory limit of a run [bytes]
 
-/// All rows, and the run of each.
+/// The rows of the report, and the run of each row.
 struct Plan {
   std::vector<StabilityRow> rows;
   std::vector<Variant> variants;
@@ -32,7 +32,8 @@ std::vector<const Suite*> wanted_suites(const StabilityOptions& options) {
   return out;
 }
 
-/// Adds the rows of one case, after the runs of the unchanged case.
+/// Adds the rows of one case. A run of the unchanged case precedes the changed runs of a
+/// subproblem.
 void add_case(const StabilityOptions& options, const std::string& name, Plan& out) {
   const std::string path = find_case(name);
   const Scene scene = read_scene(io::CaseFile(path, options.overrides));
@@ -59,16 +60,17 @@ void add_case(const StabilityOptions& options, const std::string& name, Plan& ou
   }
 }
 
-/// Takes over the result of a run that has ended.
+/// Copies the result of a run that has ended into its row.
 void take_result(const VariantResult& result, StabilityRow& row) {
   if (row.has_run || (!result.done() && result.status != "failed")) return;
   row.has_run = true;
   row.exit_code = result.ending.code;
-  row.seconds_cpu = std::fmax(result.seconds_cpu, result.ending.seconds);  // one may be unknown
+  row.seconds_cpu = std::fmax(result.seconds_cpu, result.ending.seconds);  // one may be NaN
   row.assessment = assess(result);
 }
 
-/// Writes the tables of all rows that have run. @return these rows
+/// Writes the tables of all rows whose runs have ended.
+/// @return the rows whose runs have ended
 std::vector<StabilityRow> write_tables(const std::string& stem,
                                        const std::vector<StabilityRow>& rows) {
   std::vector<StabilityRow> ran;

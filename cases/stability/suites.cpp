@@ -16,10 +16,10 @@ namespace {
 using io::to_text;
 using Rows = std::vector<Perturbation>;
 
-constexpr int kShortSteps = 40;     // of a motion whose length no suite changes
-constexpr double kLongSteps = 1e5;  // of the suite "long"
+constexpr int kShortSteps = 40;     // largest number of steps of a shortened motion
+constexpr double kLongSteps = 1e5;  // number of steps in the suite "long"
 
-/// Returns "body.0.thickness=0.0001".
+/// Returns an override of a list of tables: "body.0.thickness=0.0001".
 std::string entry(const std::string& list, size_t index, const std::string& key,
                   const std::string& value) {
   return list + "." + std::to_string(index) + "." + key + "=" + value;
@@ -83,8 +83,9 @@ Rows rho_inf(const Scene& scene) {
   return out;
 }
 
-/// Overrides by which all hubs and driven cranks turn with a constant rate [rad/s]; empty: nothing
-/// turns.
+/// Returns overrides with which all hubs (rigid frames with prescribed motion) and driven cranks
+/// turn at a constant rate; none if nothing turns.
+/// @param omega  rate [rad/s]
 std::vector<std::string> turning(const Scene& scene, double omega) {
   std::vector<std::string> out;
   for (size_t i = 0; i < scene.hubs.size(); ++i)
@@ -102,7 +103,7 @@ std::vector<std::string> turning(const Scene& scene, double omega) {
   return out;
 }
 
-/// Turns at the step of the case, and at 200 steps to a turn.
+/// Returns runs with fast turns, with the time step of the case and with 200 steps per turn.
 Rows spin(const Scene& scene) {
   Rows out;
   if (!moves(scene)) return out;
@@ -136,7 +137,7 @@ Rows temperature(const Scene& scene) {
   return out;
 }
 
-/// Gravity and all constant loads times a factor.
+/// Returns runs in which gravity and all constant loads are multiplied by a factor.
 Rows loads(const Scene& scene) {
   Rows out;
   for (const double factor : {0.01, 100.0}) {
@@ -155,7 +156,7 @@ Rows loads(const Scene& scene) {
   return out;
 }
 
-/// Gives the void of all designs the same small factor.
+/// Returns runs in which the void of all designs has the same small scale factor.
 Rows voids(const Scene& scene) {
   Rows out;
   for (const double factor : {1e-3, 1e-5, 1e-7, 1e-9}) {
@@ -169,7 +170,8 @@ Rows voids(const Scene& scene) {
   return out;
 }
 
-/// 1e5 steps with one element per body, of motions that nothing drives.
+/// Returns runs of 1e5 steps with one element per body, for motions without drives, hubs, loads,
+/// heat and free lines of the mesh.
 Rows long_runs(const Scene& scene) {
   Rows out;
   if (!moves(scene) || scene.has_free_lines() || scene.has_heat() || !scene.hubs.empty() ||
@@ -221,8 +223,9 @@ std::vector<std::string> short_overrides(const Scene& scene, Part part) {
     out.push_back(end_after(scene, scene.time.step));
     return out;
   }
-  out.push_back("time.end=" + to_text(scene.esl->every));  // one load
-  // Cells have to divide the longest length, which the end decides: 120 by 20 cells always do.
+  out.push_back("time.end=" + to_text(scene.esl->every));  // only one load time
+  // The size of cells has to divide the largest length of the body, which depends on the end time.
+  // Numbers of cells, as 120 x 20, fit every length.
   for (size_t i = 0; i < scene.designs.size(); ++i)
     if (const auto& flow = scene.body(scene.designs[i].body).flow;
         flow && !flow->length.drive.empty()) {

@@ -43,7 +43,7 @@ bool is_non_finite(std::string cell) {
   return cell == "nan" || cell == "inf";
 }
 
-/// Returns the line of a CSV file that holds the first NaN or infinity; 0: there is none.
+/// Returns the number of the line of a CSV file with the first NaN or infinity; 0 if there is none.
 size_t non_finite_line(const fs::path& file) {
   std::istringstream in(text_of(file.string()));
   size_t number = 0;
@@ -56,8 +56,8 @@ size_t non_finite_line(const fs::path& file) {
   return 0;
 }
 
-/// Returns the first number in the tables of a folder and in run.json that is not finite; empty:
-/// there is none. JSON has no NaN: a run writes null instead.
+/// Returns a message on the first number in run.json and in the tables of a folder that is not
+/// finite; empty if there is none. A run writes null for NaN to run.json, because JSON has no NaN.
 std::string first_non_finite(const std::string& folder, const json& run) {
   for (const char* part : {"motion", "static"})
     if (run.is_object() && run.contains(part) && run[part].is_object())

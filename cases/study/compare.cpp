@@ -13,7 +13,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// The names that are compared. @throws Error (input) for an unknown name, or one that is twice.
+/// Returns the names of the compared optimizers.
+/// @throws Error (input) for an unknown name, or a repeated one.
 std::vector<std::string> optimizers_of(const CompareOptions& options) {
   const std::vector<std::string> known = optim::optimizer_names();
   if (options.optimizers.empty()) return known;
@@ -27,8 +28,10 @@ std::vector<std::string> optimizers_of(const CompareOptions& options) {
   return options.optimizers;
 }
 
-/// Changes of the case for an optimizer. The case's own one runs as `flexmorph run` does, to the
-/// same design and verdict, unless a budget is asked for; the others may solve as many states.
+/// Returns the overrides of the case for an optimizer. Without a budget, the optimizer of the case
+/// has no overrides, so that its run gives the same design and verdict as `flexmorph run`. The
+/// other optimizers may use the same number of state solves.
+/// @param budget  number of state solves; 0 means the iterations of the case + 1
 std::vector<std::string> changes_for(const std::string& optimizer, const optim::Settings& own,
                                      int budget) {
   std::vector<std::string> out = {"optimizer.name=" + optimizer};
@@ -39,7 +42,7 @@ std::vector<std::string> changes_for(const std::string& optimizer, const optim::
   return out;
 }
 
-/// Plans the runs; chooses the folder where none is given.
+/// Returns the plan of the runs, and sets the folder of the study if none is given.
 Comparison plan(CompareOptions& options) {
   StudyOptions& study = options.study;
   Comparison out;
@@ -51,8 +54,8 @@ Comparison plan(CompareOptions& options) {
     throw Error::input("case '" + scene.name + "' has no [[design]]: there is nothing to compare");
   out.table.names = {"run", "optimizer", "start"};
   if (study.directory.empty()) study.directory = "runs/compare_" + scene.name;
-  // Pictures of every iteration of every run are more than anybody looks at; --set output.vtk=true
-  // brings them back.
+  // VTK files of every iteration of every run are rarely needed. --set output.vtk=true enables
+  // them.
   study.overrides.insert(study.overrides.begin(), "output.vtk=false");
   for (const std::string& optimizer : out.optimizers)
     for (int start = 1; start <= options.starts; ++start) {

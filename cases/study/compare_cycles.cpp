@@ -13,11 +13,13 @@
 namespace flexmorph::cases {
 namespace {
 
+/// A kind of design cycles: its name and its overrides.
 struct Way {
   const char* name;
   std::vector<std::string> changes;
 };
-/// Plain cycles are corrected ones that end where they begin: J is measured there, too.
+// Cycles of equivalent static loads alone are run as corrected cycles without corrections, because
+// then J of their design is measured too.
 const Way kWays[] = {{"esl", {"cycle.correct=first_order", "cycle.corrections=0"}},
                      {"corrected", {"cycle.correct=first_order"}},
                      {"direct", {"cycle.correct=direct"}}};
@@ -31,7 +33,7 @@ const Way& way_called(const std::string& name) {
   return *found;
 }
 
-/// What became of a way.
+/// The result of a kind of cycles: its name and the content of run.json.
 struct Result {
   std::string name;
   nlohmann::json run;
@@ -39,7 +41,7 @@ struct Result {
   double number(const char* table, const char* key) const {
     return run.contains(table) ? run[table].value(key, 0.0) : 0.0;
   }
-  /// J over CPU seconds, the design for loads at zero.
+  /// Returns the curve of the smallest J so far over the CPU time of the corrections [s].
   io::Curve curve() const {
     io::Curve out{.name = name, .markers = true};
     double least = 1e300;
@@ -101,7 +103,7 @@ void write(const std::vector<Result>& results, const std::string& directory,
 int compare_cycles(const CompareCyclesOptions& wanted) {
   CompareCyclesOptions options = wanted;
   StudyOptions& study = options.study;
-  // Settings of cycles that correct are none of others.
+  // The overrides may contain keys of corrected cycles, which are valid only with cycle.correct.
   study.overrides.insert(study.overrides.begin(), "cycle.correct=first_order");
   const Scene scene = read_scene(io::CaseFile(find_case(study.case_name), study.overrides));
   if (scene.designs.empty() || scene.domain)

@@ -4,16 +4,20 @@
 
 namespace flexmorph::cases {
 
+/// Options of the command `compare` for kinds of design cycles.
 struct CompareCyclesOptions {
-  StudyOptions study;
-  std::vector<std::string> ways;  ///< of "esl", "corrected", "direct"
+  StudyOptions study;             ///< Options of the study.
+  std::vector<std::string> ways;  ///< Kinds of cycles: "esl", "corrected", "direct".
 };
 
-/// Designs a case by equivalent static loads alone, goes on with corrected cycles, and with the
-/// optimizer on the motion itself, all three certified by the same motion; writes compare.csv and
-/// compare.md (a row per way: J, KKT residual, motions, CPU time) and compare.svg (J over CPU time)
-/// into the study's folder; the table goes to the terminal.
-/// @return exit code as run_variants(). @throws Error (input).
+/// Designs a case with each kind of design cycles and compares the results. The kinds are
+/// equivalent static loads alone ("esl"), these followed by corrected cycles ("corrected"), and
+/// these followed by the optimizer on the motion itself ("direct"). All designs are certified by
+/// the same motion. Writes compare.csv and compare.md (a row per kind: J, KKT residual, motions,
+/// CPU time) and compare.svg (J over CPU time) into the folder of the study, and prints the table
+/// on the terminal.
+/// @return exit code as run_variants()
+/// @throws Error (input) for options or a case that cannot be used
 int compare_cycles(const CompareCyclesOptions& options);
 
 }  // namespace flexmorph::cases

@@ -8,10 +8,11 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kFeasible = 1e-4;  // violation up to which a row of a history counts
+constexpr double kFeasible = 1e-4;  // largest relative violation of a feasible row
 
-/// Compliance of the first body. The best feasible design so far is a full line, bold from the
-/// case's own start and thin from the others; from the own start also the actual history, dashed.
+/// Returns a panel with the compliance of the first body. A solid line shows the best feasible
+/// design so far; it is thick for the first completed run of an optimizer and thin for its other
+/// runs. A dashed line shows every design of the first completed run.
 io::Panel convergence(const Comparison& plan, std::span<const VariantResult> runs, bool over_time) {
   io::Panel panel;
   panel.title = over_time ? "Convergence over time" : "Convergence over state solves";
@@ -37,7 +38,8 @@ io::Panel convergence(const Comparison& plan, std::span<const VariantResult> run
       ends.push_back(b.compliance);
     }
   }
-  // What matters happens near the end: the first designs are orders of magnitude above.
+  // The range of the axis covers the final designs, because the compliances of the first designs
+  // are larger by orders of magnitude.
   if (!ends.empty()) {
     panel.y.lower = 0.9 * *std::min_element(ends.begin(), ends.end());
     panel.y.upper = 3 * median(ends);
@@ -45,7 +47,7 @@ io::Panel convergence(const Comparison& plan, std::span<const VariantResult> run
   return panel;
 }
 
-/// The last stage that any run reached.
+/// Returns the last stage that any run reached.
 int last_stage(std::span<const VariantResult> runs) {
   int last = 0;
   for (const VariantResult& run : runs)
@@ -54,7 +56,8 @@ int last_stage(std::span<const VariantResult> runs) {
   return last;
 }
 
-/// Feasible designs of one stage: those of another had another problem, and do not compare.
+/// Returns the feasible designs of one stage. Designs of different stages cannot be compared,
+/// because the problem differs between stages.
 SolveHistory progress_of(const VariantResult& run, int stage) {
   SolveHistory out;
   if (!run.done() || run.bodies.empty()) return out;

@@ -12,7 +12,8 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// Returns the figure of a run; of several bodies the geometric mean, which no body dominates.
+/// Returns the ranking figure of a run. For several bodies it is the geometric mean, so that no
+/// body dominates.
 double mean_figure(const VariantResult& run, const Comparison& plan) {
   double logs = 0;
   for (size_t b = 0; b < run.bodies.size(); ++b)
@@ -35,12 +36,12 @@ std::vector<double> values_of(const Comparison& plan, std::span<const VariantRes
   return out;
 }
 
-/// Numbers of a member of the first body.
+/// Returns an accessor of a member of the result of the first body.
 auto of_first(auto member) {
   return [member](const VariantResult& run) { return run.bodies.front().*member; };
 }
 
-/// In how many starts each optimizer has the best figure.
+/// Returns for each optimizer the number of starts from which it has the best ranking figure.
 std::vector<int> wins(const Comparison& plan, std::span<const VariantResult> runs) {
   std::vector<int> out(plan.optimizers.size(), 0);
   for (size_t s = 0; s < static_cast<size_t>(plan.starts); ++s) {
@@ -58,7 +59,10 @@ std::vector<int> wins(const Comparison& plan, std::span<const VariantResult> run
   return out;
 }
 
-/// One row of the summary.
+/// Returns the row of an optimizer in the summary.
+/// @param o     index of the optimizer
+/// @param best  ranking figures of the optimizer with the best median
+/// @param won   number of starts from which the optimizer has the best ranking figure
 std::vector<std::string> summary_row(const Comparison& plan, std::span<const VariantResult> runs,
                                      size_t o, const std::vector<double>& best, int won) {
   const auto done = runs_of(plan, runs, o);

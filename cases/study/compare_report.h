@@ -10,29 +10,29 @@
 
 namespace flexmorph::cases {
 
-/// A comparison as it was planned: runs in the order [optimizer][start].
+/// The plan of a comparison of optimizers; its runs are in the order [optimizer][start].
 struct Comparison {
-  std::string case_name;
-  std::vector<std::string> optimizers;
-  int starts = 0;
-  ResultTable table;
-  std::vector<Variant> variants;
+  std::string case_name;                ///< Path or name of the case.
+  std::vector<std::string> optimizers;  ///< Names of the optimizers.
+  int starts = 0;                       ///< Number of starts of every optimizer.
+  ResultTable table;                    ///< First columns and goals of the table of results.
+  std::vector<Variant> variants;        ///< The runs, in the order [optimizer][start].
 };
 
-/// A row per optimizer, the first row is the header: medians over the starts, the range of the
-/// figure, and whether the spread tells an optimizer from the best one.
+/// Returns a header and a row per optimizer: medians over the starts, the range of the ranking
+/// figure (see figure_of()), and whether the difference from the best optimizer exceeds the spread.
 std::vector<std::vector<std::string>> summary_of(const Comparison& plan,
                                                  std::span<const VariantResult> runs);
 
-/// The runs of one optimizer that are done, with their starts (from 0).
+/// Returns the completed runs of one optimizer, with the indices of their starts (from 0).
 std::vector<std::pair<const VariantResult*, int>> runs_of(const Comparison& plan,
                                                           std::span<const VariantResult> runs,
                                                           size_t optimizer);
 
-/// Convergence over state solves and over CPU time, and data profiles.
+/// Returns plots of the convergence over state solves and over CPU time, and data profiles, as SVG.
 std::string comparison_svg(const Comparison& plan, std::span<const VariantResult> runs);
 
-/// Writes compare.csv, compare.md and compare.svg.
+/// Writes compare.csv, compare.md and compare.svg into a folder.
 /// @throws Error (input) when a file cannot be written.
 void write_comparison(const Comparison& plan, std::span<const VariantResult> runs,
                       const std::string& directory);

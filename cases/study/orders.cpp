@@ -12,16 +12,18 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kLeastOrder = 0.05, kMostOrder = 20;
-constexpr double kLowOrder = 0.3;             // of what may still be bounded
-constexpr double kFalls = 0.9, kGrows = 1.5;  // ratios of neighbouring differences per ratio of h
+constexpr double kLowOrder = 0.3;  // lowest order in the bound of a series that is not converged
+// Ratios of neighbouring slopes (slopes_of()): below kFalls they decrease, above kGrows they
+// increase.
+constexpr double kFalls = 0.9, kGrows = 1.5;
 
-/// (h₁ᵖ - h₂ᵖ)/(h₂ᵖ - h₃ᵖ), which grows with p.
+/// Returns (h₁ᵖ - h₂ᵖ)/(h₂ᵖ - h₃ᵖ), which increases with p.
 double ratio_at(double p, double h1, double h2, double h3) {
   const double a = std::pow(h1 / h2, p), b = std::pow(h3 / h2, p);
   return (a - 1) / (1 - b);
 }
 
-/// The finest triples with an order, from the finest one on.
+/// Returns the indices of the triples with an order, from the finest triple on.
 std::vector<size_t> finest_orders(const std::vector<double>& orders) {
   std::vector<size_t> out;
   for (size_t i = orders.size(); i-- > 0;)
@@ -31,7 +33,8 @@ std::vector<size_t> finest_orders(const std::vector<double>& orders) {
 
 std::string share(double difference, double scale) { return io::to_text(difference / scale, 2); }
 
-/// Differences per ratio of h (>= 0), coarse to fine.
+/// Returns the absolute differences of neighbouring values, divided by the logarithm of the ratio
+/// of h, coarse to fine.
 std::vector<double> slopes_of(std::span<const LevelValue> levels) {
   std::vector<double> out;
   for (size_t i = 0; i + 1 < levels.size(); ++i)
@@ -48,7 +51,8 @@ double range_of_last(std::span<const LevelValue> levels, size_t count) {
   return high->value - low->value;
 }
 
-/// How far the limit may lie from the finest of levels without an order.
+/// Returns the uncertainty of the limit of levels without an order, with respect to the finest
+/// level.
 double reach(std::span<const LevelValue> levels, double scale) {
   const size_t n = levels.size();
   if (n < 3) return kInfinite;
@@ -64,14 +68,14 @@ double reach(std::span<const LevelValue> levels, double scale) {
     return kSwing * range_of_last(levels, 4);
   if (!rests && slope >= kFalls * slope_before)
     return std::max(slope, slope_before) * std::log(kFarthest);
-  // What is left if it goes on with first order, or with the lower one that was seen.
+  // Remainder for convergence with first order, or with a lower order that was observed.
   const double ratio = levels[n - 2].h / levels[n - 1].h;
   const double seen = order_of(levels[n - 3], levels[n - 2], levels[n - 1], 0);
   const double order = std::isfinite(seen) ? std::clamp(seen, kLowOrder, 1.0) : 1;
   return std::max(std::abs(last), std::abs(last) / (std::pow(ratio, order) - 1));
 }
 
-/// Without an order: the finest level, and how far its last changes went.
+/// Sets the limit of levels without an order: the value of the finest level, with its uncertainty.
 void bound(std::span<const LevelValue> levels, double scale, Limit& out) {
   out.value = levels.back().value;
   out.uncertainty = reach(levels, scale);
@@ -82,6 +86,7 @@ void bound(std::span<const LevelValue> levels, double scale, Limit& out) {
           : "; its differences grow, so nothing bounds the error";
 }
 
+/// Sets the limit of a series that converges faster than any power.
 void judge_fast(std::span<const LevelValue> levels, double scale, Limit& out) {
   const size_t n = levels.size();
   out.order = kNone;
@@ -98,6 +103,7 @@ void judge_fast(std::span<const LevelValue> levels, double scale, Limit& out) {
           : "the last change, " + share(last, scale) + ", is as large as those before";
 }
 
+/// Sets the limit of a series that converges by a power law, if its orders agree.
 void judge_orders(std::span<const LevelValue> levels, const std::optional<Theory>& theory,
                   double scale, Limit& out) {
   const std::vector<size_t> finest = finest_orders(out.orders);
@@ -123,7 +129,8 @@ void judge_orders(std::span<const LevelValue> levels, const std::optional<Theory
     out.sentence = "the order " + io::to_text(b, 3) + " is too low to extrapolate";
     return bound(levels, scale, out);
   }
-  // The finest triple with an order; levels finer than that are at the floor.
+  // Extrapolate from the finest triple with an order, because differences of finer levels are below
+  // the floor.
   const std::span<const LevelValue> fine = levels.subspan(finest[0], 3);
   const std::span<const LevelValue> before = levels.subspan(finest[1], 3);
   out.converged = true;

@@ -38,7 +38,7 @@ pid_t start(const Child& child, const ChildLimits& limits) {
   const pid_t parent = getpid(), pid = fork();
   if (pid < 0) throw Error::numerical("a process cannot be started");
   if (pid == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);  // a study that is killed takes its runs along
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // the runs end if the study is killed
     if (getppid() != parent) _exit(127);
     if (limits.memory > 0) setrlimit(RLIMIT_AS, &memory);
     setrlimit(RLIMIT_CORE, &no_core);
@@ -51,7 +51,7 @@ pid_t start(const Child& child, const ChildLimits& limits) {
   return pid;
 }
 
-/// CPU time of a process that has not been waited for [s].
+/// Returns the CPU time of a process that was not waited for yet [s]; 0 if it is unknown.
 double cpu_seconds_of(pid_t pid) {
   clockid_t clock{};
   timespec time{};
@@ -59,10 +59,11 @@ double cpu_seconds_of(pid_t pid) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+/// A running child: its index in the list, and the time of the SIGINT that it received.
 struct Running {
   size_t place = 0;
   Clock::time_point begin = Clock::now(), asked = {};
-  double asked_at_cpu = 0;  // CPU time when it was asked to end [s]
+  double asked_at_cpu = 0;  // CPU time at the SIGINT [s]
   bool over_time = false, told = false;
 };
 
@@ -79,7 +80,8 @@ Ending ending_of(int status, const rusage& usage, const Running& child) {
   return out;
 }
 
-/// Asks those that are over their time to end, and ends those that do not.
+/// Sends SIGINT to children that exceed their time limit or that have to be interrupted, and kills
+/// children that do not end after it.
 void keep_limits(std::map<pid_t, Running>& running, const ChildLimits& limits) {
   for (auto& [pid, child] : running) {
     if (child.over_time || child.told) {
@@ -104,7 +106,7 @@ bool run_children(const std::vector<Child>& children, int jobs, const ChildLimit
                   const ChildObserver& observer) {
   interrupted = 0;
   struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = 1; };  // no SA_RESTART: waiting ends
+  action.sa_handler = [](int) { interrupted = 1; };  // without SA_RESTART, system calls end
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::map<pid_t, Running> running;

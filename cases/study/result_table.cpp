@@ -9,16 +9,17 @@
 namespace flexmorph::cases {
 namespace {
 
+/// One row of a table: a designed body of a run, with its goal.
 struct Entry {
   const VariantResult& run;
   const BodyResult& body;
   const mmc::Goal& goal;
 };
 
-/// A number of a result.
+/// A column with a number of a result.
 struct NumberColumn {
   const char* name;
-  int digits;  ///< in reports; 0: only in CSV files
+  int digits;  ///< Number of digits in reports; 0: the column is only in CSV files.
   double (*value)(const Entry& e);
 };
 
@@ -58,13 +59,14 @@ const std::vector<NumberColumn>& number_columns() {
   return kColumns;
 }
 
-/// Returns NaN for a name that is missing.
+/// Returns the value of a response; NaN if the name is missing.
 double value_of(const mmc::Figures& figures, const std::string& name) {
   const auto found = figures.find(name);
   return found == figures.end() ? std::nan("") : found->second;
 }
 
-/// Calls `row` with the first cells of every run and its entries, at least one (null: no design).
+/// Calls `row` for every entry of every run, with the first cells of the run; for a run without
+/// designs it calls `row` once with a null entry.
 template <class Row>
 void for_rows(const ResultTable& table, std::span<const VariantResult> runs, const Row& row) {
   for (size_t k = 0; k < runs.size(); ++k) {

@@ -27,7 +27,9 @@ int peaks(std::span<const double> values, std::span<const int> stage, double sha
   constexpr double kNone = std::numeric_limits<double>::infinity();
   int count = 0;
   bool rising = false;
-  double best = kNone, low = kNone, top = 0;  // since the stage began, the last peak, the last rise
+  // Smallest value of the stage, smallest value since the last peak, largest value of the last
+  // rise.
+  double best = kNone, low = kNone, top = 0;
   for (size_t i = 0; i < values.size(); ++i) {
     if (i > 0 && stage[i] != stage[i - 1]) {
       rising = false;

@@ -34,7 +34,8 @@ bool finished(const StudyOptions& options, const Variant& variant, const Variant
   return ended && keeps_case(folder_of(options, variant), case_of(options, variant));
 }
 
-/// A run of the variant by this very program; its words go to a log beside its folder.
+/// Returns the process that runs a variant with this program. Its output is written to a log file
+/// next to its folder.
 Child child_of(const StudyOptions& options, const Variant& variant) {
   const std::string folder = folder_of(options, variant);
   Child out;
@@ -42,7 +43,8 @@ Child child_of(const StudyOptions& options, const Variant& variant) {
   out.words = {"run",       case_name_of(options, variant), "-o", folder, "--quiet",
                "--threads", io::to_text(options.threads)};
   out.words.insert(out.words.end(), options.arguments.begin(), options.arguments.end());
-  // What was killed goes on; what was changed begins anew, beside it.
+  // A killed run of the same case is resumed. If the case was changed, a new run starts, and the
+  // old folder is moved.
   if (keeps_case(folder, case_of(options, variant))) out.words.emplace_back("--resume");
   for (const std::string& change : overrides_of(options, variant)) {
     out.words.emplace_back("--set");
@@ -57,7 +59,7 @@ void say(const StudyOptions& options, const std::string& line) {
   std::fflush(stdout);
 }
 
-/// The result of a run that has just ended. A run that could not say so itself has failed.
+/// Returns the result of a run that has just ended. A run without a status of its own has failed.
 VariantResult result_of(const StudyOptions& options, const Variant& variant, const Ending& ending) {
   VariantResult out = read_result(options, variant);
   out.ending = ending;
@@ -114,7 +116,7 @@ int run_variant(const StudyOptions& options, const Variant& variant) {
     say(options, variant.name + ": finished before");
     return 0;
   }
-  int code = 4;  // of a run that was interrupted before it started
+  int code = 4;  // exit code if the run is interrupted before it starts
   run_children({child_of(options, variant)}, 1, {.seconds = options.time_limit},
                {.started = [&](size_t) { say(options, variant.name + ": started"); },
                 .ended =
@@ -124,7 +126,7 @@ int run_variant(const StudyOptions& options, const Variant& variant) {
                       if (!result.message.empty())
                         std::fprintf(stderr, "flexmorph: %s: %s\n", variant.name.c_str(),
                                      result.message.c_str());
-                      // What the case expects of itself is not asked of its variants.
+                      // Expectations of the case do not apply to its variants.
                       if (result.status == "interrupted")
                         code = 4;
                       else
@@ -146,7 +148,7 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
       say(options, variants[i].name + ": finished before");
       continue;
     }
-    // What an earlier run with another case has left is no result of this study.
+    // Results of an earlier run of another case in the folder do not belong to this study.
     VariantResult& result = out.results[i] = VariantResult();
     result.name = variants[i].name;
     result.directory = folder_of(options, variants[i]);

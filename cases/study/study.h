@@ -11,115 +11,149 @@
 #include "io/case_files/case_file.h"
 #include "optim/mmc/problem/body_problem.h"
 
-/// Many runs of one case with changes: each a process of its own with a run folder of its own.
+/// Studies: many runs of one case with changes. Every run has its own process and run folder.
 namespace flexmorph::cases {
 
+/// Options that all studies have.
 struct StudyOptions {
-  std::string case_name;
-  std::string directory;               ///< holds the run folders; empty: chosen by the study
-  std::vector<std::string> overrides;  ///< KEY=VALUE of all variants
-  int jobs = 1;                        ///< processes at a time
-  int threads = 1;                     ///< of each
-  bool quiet = false;
-  double time_limit = 0;               ///< CPU time after which a run is ended [s]; 0: none
-  double memory_limit = 0;             ///< address space of a run [bytes]; 0: no limit
-  std::vector<std::string> arguments;  ///< further ones of every `flexmorph run`
-  /// A run that fails is a result: it is not run again with the same case, and not reported as an
-  /// error.
+  std::string case_name;               ///< Path of a case file, or name of a shipped case.
+  std::string directory;               ///< Folder of the study; empty: chosen by the study.
+  std::vector<std::string> overrides;  ///< Overrides of all variants, "KEY=VALUE".
+  int jobs = 1;                        ///< Number of processes at the same time.
+  int threads = 1;                     ///< Number of threads of each process.
+  bool quiet = false;                  ///< True if no progress is printed.
+  double time_limit = 0;               ///< CPU time after which a run is ended [s]; 0: no limit.
+  double memory_limit = 0;             ///< Address space of a run [bytes]; 0: no limit.
+  std::vector<std::string> arguments;  ///< Further arguments of every `flexmorph run`.
+
+  /// True if a failed run counts as a result: it is not run again with the same case, and it is not
+  /// reported as an error.
   bool keeps_failures = false;
 };
 
+/// One run of a study: a changed case with a name.
 struct Variant {
-  std::string name;                    ///< of its folder
-  std::vector<std::string> overrides;  ///< of its own, after those of the study
-  std::string case_name = {};          ///< empty: that of the study
+  std::string name;                    ///< Name of its run folder in the folder of the study.
+  std::vector<std::string> overrides;  ///< Overrides that follow the overrides of the study.
+  std::string case_name = {};          ///< Case of the variant; empty means the case of the study.
 };
 
-/// One designed body of a run: results of run.json and columns of history.csv.
+/// The results of one designed body of a run, read from run.json and history.csv.
 struct BodyResult {
-  std::string verdict;  ///< on its design: optim::to_string(Verdict::Kind)
-  std::string body, stop;
-  double compliance = 0, volume = 0, sharp_compliance = 0, sharp_volume = 0, uniform_compliance = 0;
-  /// Of the outline (NaN: not judged, infinite: a load acts on nothing that is held), its estimated
-  /// relative error, and its volume.
-  double body_fitted = 0, body_fitted_error = 0, body_fitted_volume = 0;
-  mmc::Figures further;  ///< other responses, and likewise with sharp_ before their names
-  double kkt = 0;
-  bool connected = false;
-  std::optional<double> min_feature;
-  int iterations = 0, solves = 0, factorizations = 0, components = 0;
-  int peaks = 0;                 ///< of the history, see peaks()
-  int disconnected = 0;          ///< sharp pictures of the history that had come apart
-  double seconds_optimizer = 0;  ///< CPU seconds of the optimizer itself
-  /// Rows of the history. Solves count on over cycles; seconds are cumulative CPU seconds of the
-  /// design iterations; rows of one stage share cycle and band, only they compare.
-  std::vector<double> history_solves, history_compliance, history_violation, history_seconds;
-  std::vector<int> history_stage;
-  std::vector<double> sharp_iteration, sharp_history;  ///< where evaluated
+  std::string verdict;     ///< Verdict on the design: optim::to_string(Verdict::Kind).
+  std::string body, stop;  ///< Name of the body, and reason why the optimizer stopped.
 
-  bool unfinished() const;  ///< whether the verdict on its design says so
+  /// Compliances [J] and volume fractions [-] of the regularized design, of the crisp design, and
+  /// of uniform material.
+  double compliance = 0, volume = 0, sharp_compliance = 0, sharp_volume = 0, uniform_compliance = 0;
+
+  /// Body-fitted compliance of the outline [J] (NaN: not verified, infinite: a load acts on
+  /// material without support), its estimated relative error [-], and the volume fraction of the
+  /// outline [-].
+  double body_fitted = 0, body_fitted_error = 0, body_fitted_volume = 0;
+
+  /// Values of further responses by name, with the prefix sharp_ for the crisp design.
+  mmc::Figures further;
+
+  double kkt = 0;                     ///< KKT residual of the design problem [-].
+  bool connected = false;             ///< True if one region of material joins supports and loads.
+  std::optional<double> min_feature;  ///< Smallest width of material of the outline [m].
+
+  /// Numbers of design iterations, state solves, factorizations and components.
+  int iterations = 0, solves = 0, factorizations = 0, components = 0;
+
+  int peaks = 0;                 ///< Number of peaks of the history, see peaks().
+  int disconnected = 0;          ///< Number of history rows with a disconnected crisp design.
+  double seconds_optimizer = 0;  ///< CPU time of the optimizer itself [s].
+
+  /// Columns of the history (n_rows). Solves are counted over all cycles, and seconds are the
+  /// cumulative CPU time of the design iterations [s].
+  std::vector<double> history_solves, history_compliance, history_violation, history_seconds;
+
+  /// Stage of every row. The rows of a stage have the same cycle and band; only rows of one stage
+  /// can be compared.
+  std::vector<int> history_stage;
+
+  /// Iterations at which the crisp design was evaluated, and its compliances [J].
+  std::vector<double> sharp_iteration, sharp_history;
+
+  /// Tells whether the verdict on the design is "unfinished".
+  bool unfinished() const;
 };
 
-/// What a run folder says.
+/// The results of a run, read from its run folder.
 struct VariantResult {
-  std::string name, directory;
-  std::string status =
-      "missing";  ///< "done", "done, not usable", "failed", "interrupted", "running" (its process
-                  ///< lives), "killed" (it does not), "missing"
-  std::string message;  ///< why it failed
-  Ending ending;        ///< how its process ended; of a run of an earlier study the exit code
+  std::string name, directory;  ///< Name of the variant, and path of its run folder.
+
+  /// Status: "done", "done, not usable", "failed", "interrupted", "running" (a process still writes
+  /// into the folder), "killed" (the status is "running", but the process has ended), "missing".
+  std::string status = "missing";
+
+  std::string message;  ///< Reason of a failure.
+  Ending ending;        ///< End of the process; for a run of an earlier study only its exit code.
+
+  /// CPU time [s], wall time [s] and peak memory [bytes] of the run.
   double seconds_cpu = 0, seconds_wall = 0, peak_memory_bytes = 0;
-  std::vector<BodyResult> bodies;
 
-  int warnings = 0;  ///< that it gave
+  std::vector<BodyResult> bodies;  ///< Results of the designed bodies.
 
+  int warnings = 0;  ///< Number of warnings of the run.
+
+  /// Tells whether the run is complete.
   bool done() const { return status.starts_with("done"); }
-  bool unfinished() const;       ///< whether the verdict on one of its designs says so
-  std::string verdicts() const;  ///< those on its designs, each once
-  /// The status, the verdicts and the number of warnings.
+  /// Tells whether the verdict on one of the designs is "unfinished".
+  bool unfinished() const;
+  /// Returns the verdicts on the designs, each verdict once.
+  std::string verdicts() const;
+  /// Returns the status, the verdicts and the number of warnings as text.
   std::string words() const;
 };
 
-/// What tables of a study end with: a paragraph on its runs that are unfinished; empty: none.
+/// Returns the paragraph on unfinished runs that follows the tables of a study; empty if all runs
+/// are finished.
 std::string convergence_note(std::span<const VariantResult> runs);
 
-/// Reads every variant's case and builds what it would build.
-/// @throws Error (input) as a run would; nothing has been written then.
+/// Reads the case of every variant and builds its model as a run would do.
+/// @throws Error (input) as a run would; no file has been written then.
 void check_variants(const StudyOptions& options, std::span<const Variant> variants);
 
+/// The result of run_variants().
 struct StudyOutcome {
-  int exit_code = 0;  ///< 0, 3 when a run failed, 4 when interrupted
-  std::vector<VariantResult> results;
+  int exit_code = 0;                   ///< Exit code: 0; 3 if a run failed; 4 if interrupted.
+  std::vector<VariantResult> results;  ///< Results of all variants.
 };
 
-/// Runs the variants that are not finished yet (status done with the very same case). When the
-/// study is interrupted, so are the runs under way: they keep what they have.
-/// @param changed  called after each that ended and at the end, with the results so far
+/// Runs the variants that are not finished yet. A variant is finished if the status of its folder
+/// is done and the case in the folder is identical. If the study is interrupted, the current runs
+/// are interrupted too and keep their results so far.
+/// @param changed  called with the results so far, after the end of every run and at the end
 /// @throws Error (input) when the folder cannot be written.
 StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
                           const std::function<void(std::span<const VariantResult>)>& changed);
 
-/// Runs one variant in its folder, unless it is finished. @return its exit code.
+/// Runs one variant in its folder, unless it is finished.
+/// @return exit code of the run
 int run_variant(const StudyOptions& options, const Variant& variant);
 
-/// Run folder of a variant.
+/// Returns the path of the run folder of a variant.
 std::string folder_of(const StudyOptions& options, const Variant& variant);
 
-/// The case of a variant. @throws Error (input) as a run would.
+/// Returns the case of a variant.
+/// @throws Error (input) as a run would.
 io::CaseFile case_of(const StudyOptions& options, const Variant& variant);
 
-/// What the folder of a variant says.
+/// Reads the result of a variant from its run folder.
 VariantResult read_result(const StudyOptions& options, const Variant& variant);
 
-/// What a run complained of last, from its words on the terminal: the first line of that message,
-/// without the name of the program; of one that did not complain its last line.
+/// Returns the last error message in the terminal output of a run: the first line of the message,
+/// without the name of the program. Without an error message, it returns the last line.
 std::string last_words(const std::string& words);
 
-/// A whole file; empty when it cannot be read.
+/// Returns the text of a file; empty if the file cannot be read.
 std::string text_of(const std::string& path);
 
-/// What turns a run of the case into one of a part, without files that nobody asked for and without
-/// expectations, which are of the case as it is.
+/// Returns the overrides that reduce a run of the case to one subproblem, without pictures and
+/// without expectations, because the expectations belong to the unchanged case.
 std::vector<std::string> lean_overrides(const Scene& scene, Part part);
 
 }  // namespace flexmorph::cases

@@ -50,7 +50,8 @@ BodyResult read_body(const nlohmann::json& r) {
   return out;
 }
 
-/// CPU seconds of every row: all evaluations since the row before.
+/// Returns the CPU time of every row of the history, which is the time of all evaluations since the
+/// previous row [s].
 std::vector<double> row_seconds(const io::CsvTable& table) {
   std::vector<double> seconds(table.n_rows(), 0);
   for (const std::string& name : table.columns) {
@@ -62,7 +63,8 @@ std::vector<double> row_seconds(const io::CsvTable& table) {
   return seconds;
 }
 
-/// Evaluations between a row and the row before it of the same body and cycle.
+/// Returns the number of evaluations of every row since the previous row of the same body and
+/// cycle.
 std::vector<int> row_evaluations(const io::CsvTable& table) {
   const std::vector<std::string> body = table.texts("body"), cycle = table.texts("cycle");
   const std::vector<double> total = table.numbers("evaluations");
@@ -182,12 +184,12 @@ VariantResult read_result(const StudyOptions& options, const Variant& variant) {
   if (text.empty()) return out;
   try {
     read_run(text, out);
-  } catch (const std::exception& error) {  // files of somebody else, or cut off
+  } catch (const std::exception& error) {  // incomplete files, or files of another program
     out.status = "failed";
     out.message = error.what();
     out.bodies.clear();
   }
-  // Who was killed could not say so.
+  // A killed process could not write its status.
   if (out.status == "running" && !io::is_being_filled(out.directory)) out.status = "killed";
   return out;
 }

@@ -25,7 +25,8 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// A value as part of a folder's name: of lists and strings what is in them.
+/// Returns a value as text for the name of a folder, without the brackets of lists and the quotes
+/// of strings.
 std::string plain(const std::string& value) {
   const size_t first = value.find_first_not_of("[\"' "), last = value.find_last_not_of("]\"' ");
   std::string out;
@@ -45,7 +46,7 @@ std::vector<Motions> motions_of(const Sweep& sweep, std::span<const VariantResul
   return out;
 }
 
-/// The table on the terminal, designs or motions.
+/// Returns the table of designs or motions for the terminal.
 std::vector<std::vector<std::string>> summary_of(const Sweep& sweep,
                                                  std::span<const VariantResult> runs) {
   return sweep.table.goals.empty() ? motion_table(motions_of(sweep, runs), runs)
@@ -60,8 +61,8 @@ std::optional<double> number_of(const std::string& text) {
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// Ends of the runs against the numbers of the last key, where it has three numbers or more; else
-/// empty.
+/// Returns a picture of the values at the end of the runs against the numbers of the last key;
+/// empty if this key has less than three values, or values that are not numbers.
 std::string ends_picture(const Sweep& sweep, std::span<const Motions> motions) {
   const size_t last = sweep.varied.size() - 1;
   if (sweep.varied[last].values.size() < 3) return "";
@@ -101,8 +102,8 @@ void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
     write_designs(sweep, runs, stem);
 }
 
-/// Goals of the designs of all variants. @throws Error (input) when some have more designs than
-/// others.
+/// Returns the goals of the designs of all variants.
+/// @throws Error (input) if the variants have different numbers of designs.
 std::vector<mmc::Goal> goals_of(const StudyOptions& study, std::span<const Variant> variants) {
   std::vector<mmc::Goal> out;
   std::optional<size_t> n_designs;

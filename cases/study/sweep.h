@@ -4,32 +4,38 @@
 
 namespace flexmorph::cases {
 
+/// Options of the command `sweep`.
 struct SweepOptions {
-  StudyOptions study;
-  std::vector<std::string> vary;  ///< "KEY=V1,V2,..."
-  int index = 0;                  ///< run this variant only, from 1; 0: all, and collect
-  bool list = false;              ///< print the variants instead
-  std::string reference;          ///< CSV with columns of motion.csv, drawn as points; or empty
+  StudyOptions study;             ///< Options of the study.
+  std::vector<std::string> vary;  ///< Varied keys with their values, "KEY=V1,V2,...".
+  int index = 0;                  ///< Number of the only variant to run, from 1; 0 means all.
+  bool list = false;              ///< True if the variants are printed and not run.
+  std::string reference;          ///< CSV file with columns of motion.csv to plot; or empty.
 };
 
-/// One key and its values. Those of "case" are cases: each takes the place of the study's.
+/// A varied key and its values. The values of the key "case" are cases that replace the case of the
+/// study.
 struct Varied {
-  std::string key;
-  std::vector<std::string> values;
+  std::string key;                  ///< Path of the key in the case file, or "case".
+  std::vector<std::string> values;  ///< Values of the key, as text of a case file.
 };
-/// "KEY=V1,V2": commas within brackets, braces and quotes belong to a value.
-/// @throws Error (input) for no key, no value or an empty one.
+/// Reads a key and its values from "KEY=V1,V2". Commas within brackets, braces and quotes belong to
+/// a value.
+/// @throws Error (input) for a text without a key or value, or with an empty value.
 Varied read_varied(const std::string& text);
 
-/// All combinations, the last key fastest, named by the last parts of their keys.
-/// @throws Error (input) for none, or a key twice.
+/// Returns all combinations of the values; the value of the last key changes fastest. The names of
+/// the variants consist of the last components of the keys and of the values.
+/// @throws Error (input) for no key, a repeated key, or too many combinations.
 std::vector<Variant> combinations(const std::vector<Varied>& varied);
 
-/// Runs a case with every combination of values, and collects sweep.csv, sweep.md and sweep.svg
-/// (designs above their histories; of scenes without a design observed quantities, one curve per
-/// variant, and where the last key has three numbers or more sweep_ends.svg, the ends of the runs
-/// against them) in the study's folder; the table goes to the terminal.
-/// @return exit code as run_variants(). @throws Error (input).
+/// Runs a case with every combination of values, writes sweep.csv, sweep.md and sweep.svg into the
+/// folder of the study, and prints the table on the terminal. The picture shows designs above their
+/// histories. For scenes without a design it shows the observed quantities with one curve per
+/// variant; if the last key has three or more numbers, sweep_ends.svg shows the values at the end
+/// of the runs against these numbers.
+/// @return exit code as run_variants()
+/// @throws Error (input) for options or a case that cannot be used
 int sweep_case(const SweepOptions& options);
 
 }  // namespace flexmorph::cases

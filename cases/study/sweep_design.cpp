@@ -21,7 +21,8 @@ std::string history_picture(const BodyResult& b, double lowest, double highest) 
   std::vector<double> iteration(b.history_compliance.size());
   for (size_t i = 0; i < iteration.size(); ++i) iteration[i] = static_cast<double>(i + 1);
   panel.curves.push_back({"blurred", iteration, b.history_compliance});
-  // A design that came apart is far above the frame: the legend says so.
+  // The compliance of a disconnected design is far above the range of the axis, so the legend gives
+  // the number of such designs.
   const auto above = std::count_if(b.sharp_history.begin(), b.sharp_history.end(),
                                    [&](double c) { return c > highest; });
   const std::string name = above > 0 ? "sharp (" + std::to_string(above) + " above)" : "sharp";
@@ -30,8 +31,8 @@ std::string history_picture(const BodyResult& b, double lowest, double highest) 
   return io::plot_svg(figure);
 }
 
-/// Smallest and largest compliance, blurred or sharp, of the histories of one body in the runs of
-/// one case.
+/// Returns the smallest and the largest compliance, of regularized and crisp designs, in the
+/// histories of one body in the runs of one case [J].
 std::pair<double, double> range_of(const Sweep& sweep, std::span<const VariantResult> runs,
                                    const std::string& case_name, size_t body) {
   double lowest = INFINITY, highest = 0;
@@ -48,7 +49,8 @@ std::pair<double, double> range_of(const Sweep& sweep, std::span<const VariantRe
   return {lowest, highest};
 }
 
-/// Deflections of a body in the runs of `first` and those beside it, which differ in the last key.
+/// Returns a picture of the deflections of a body in the run `first` and in the following runs that
+/// differ from it in the last key.
 std::string deflection_picture(const Sweep& sweep, std::span<const VariantResult> runs,
                                size_t first, size_t body) {
   io::Panel panel;
@@ -71,8 +73,8 @@ std::string deflection_picture(const Sweep& sweep, std::span<const VariantResult
   return io::plot_svg(figure);
 }
 
-/// Designs above their histories, those of a body and case on the same axis, and below them
-/// deflections: P Figs. 13 to 23 on one page.
+/// Returns one page as P Figs. 13 to 23 (see fem/README.md): designs above their histories, and
+/// deflections below them. Histories of one body and case have the same axis.
 std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
   std::vector<io::SheetEntry> entries;
   for (size_t k = 0; k < runs.size(); ++k) {
@@ -101,7 +103,7 @@ std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
         entry.pictures.push_back(picture);
     if (!entry.pictures.empty()) entries.push_back(std::move(entry));
   }
-  // Variants that differ in the last key stand side by side, where they fit on a page.
+  // Variants that differ in the last key are placed side by side if they fit on a page.
   return io::contact_sheet(
       sweep.case_name, entries,
       sweep.varied.size() > 1 && sweep.n_last() <= 6 ? static_cast<int>(sweep.n_last()) : 4);

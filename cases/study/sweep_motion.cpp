@@ -25,7 +25,8 @@ Motions first_of(std::initializer_list<const char*> names, const std::string& di
   return {label, {}, {}};
 }
 
-/// By more than rounding; what is zero but for rounding is far below 1e-18 of any unit.
+/// Tells whether values vary by more than rounding. A quantity that is zero except for rounding is
+/// far below 1e-18 in its unit.
 bool varies(const std::vector<double>& y) {
   const auto [low, high] = std::minmax_element(y.begin(), y.end());
   if (low == y.end()) return false;
@@ -70,7 +71,7 @@ io::Figure figure_of(const std::string& title) {
   return out;
 }
 
-/// Columns of the first variant that has any, time or load factor first.
+/// Returns the names of the columns of the first variant that has columns.
 std::span<const std::string> names_of(std::span<const Motions> variants) {
   const auto first = std::find_if(variants.begin(), variants.end(),
                                   [](const Motions& m) { return m.names.size() > 1; });

@@ -8,48 +8,54 @@
 #include "cases/study/study.h"
 #include "io/plots.h"
 
-/// What a sweep shows of scenes that are not designed: the observed quantities of all variants, one
-/// over the other.
+/// Plots and tables of a sweep of scenes without a design: the observed quantities of all variants.
 namespace flexmorph::cases {
 
-/// Columns of motion.csv (or of path.csv of a static analysis) by name, the first against which the
-/// others are drawn; empty when there is no such file. A reference has the same form.
+/// The columns of motion.csv (or of path.csv of a static analysis) of a variant or of a reference.
+/// The first column is the abscissa of the others. There are no columns if there is no such file.
 struct Motions {
-  std::string label;
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
+  std::string label;                         ///< Label of the curves in plots.
+  std::vector<std::string> names;            ///< Names of the columns (n_columns).
+  std::vector<std::vector<double>> columns;  ///< Values by column (n_columns x n_rows).
 
+  /// Returns the values of a column (n_rows); null if there is no column of this name.
   const std::vector<double>* column(const std::string& name) const;
 };
-/// Of a run folder. @throws Error (input) when a file cannot be parsed.
+/// Reads the columns of the motion or of the path of equilibria in a run folder.
+/// @throws Error (input) when a file cannot be parsed.
 Motions read_motions(const std::string& directory, const std::string& label);
-/// The deflection of a body's tip in the motion of its design.
+/// The tip deflection of a body over the motion with its design.
 struct Deflection {
-  std::vector<double> time, value;  // [s], [m]
-  double largest() const;           ///< size [m]
+  std::vector<double> time, value;  ///< Times [s] and tip deflections [m] (n_rows).
+
+  /// Returns the largest absolute value of the deflection [m].
+  double largest() const;
 };
-/// Returns the deflection on the mesh that verifies the design where there is one; none for a body
-/// without a tip. @throws Error (input) when a file cannot be parsed.
+/// Returns the tip deflection of a body, from the verification of the design if there is one;
+/// nothing for a body without a tip.
+/// @throws Error (input) when a file cannot be parsed.
 std::optional<Deflection> deflection_of(const VariantResult& run, const std::string& body);
-/// Of a file of the same form. @throws Error (input) when it cannot be read.
+/// Reads the columns of a reference file; returns no columns for an empty path.
+/// @throws Error (input) when the file cannot be read.
 Motions read_reference(const std::string& path);
 
-/// A panel per column that is not constant, a curve per variant; points of the reference where it
-/// has that column.
+/// Returns a figure with a panel per column that is not constant, a curve per variant, and points
+/// of the reference if it has the column.
 io::Figure motion_figure(const std::string& title, std::span<const Motions> variants,
                          const Motions& reference);
 
-/// What the runs of a sweep came to, against the numbers that were varied: a panel per column that
-/// differs between runs, T Fig. 15. `change` is that of the value at the end of the run against the
-/// first of its curve [%] where that is not zero, else the value at the end.
-/// @param label   of the numbers
-/// @param number  of every variant
-/// @param curve   what else was varied: variants of the same one make a curve
+/// Returns a figure of the values at the end of the runs against the varied numbers, with a panel
+/// per column that differs between runs (T Fig. 15, see fem/README.md). A panel shows the change of
+/// the value relative to the first value of the curve [%] if none of these first values is zero,
+/// else the value.
+/// @param label   label of the axis of the numbers
+/// @param number  varied number of every variant
+/// @param curve   name of the curve of every variant; variants with the same name form a curve
 io::Figure final_figure(const std::string& title, const std::string& label,
                         std::span<const Motions> variants, std::span<const double> number,
                         std::span<const std::string> curve);
 
-/// A row per variant and observed column: smallest, largest and last value.
+/// Returns a header and a row per variant and observed column: smallest, largest and last value.
 std::vector<std::vector<std::string>> motion_table(std::span<const Motions> variants,
                                                    std::span<const VariantResult> runs);
 

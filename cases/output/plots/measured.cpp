@@ -9,7 +9,7 @@ namespace {
 struct Line {
   const char* column;
   const char* name;
-  bool analytic = false;  // of the free body, in closed form
+  bool analytic = false;  // true: closed-form solution of the free body
 };
 
 struct Group {
@@ -34,7 +34,7 @@ const std::vector<Group>& groups() {
   return kGroups;
 }
 
-/// Names of the bodies of columns "<body>.<quantity>", each once.
+/// Returns the names of the bodies of columns "<body>.<quantity>", each once.
 std::vector<std::string> bodies_of(const Series& table) {
   std::vector<std::string> out;
   for (const size_t c : table.of_group(ColumnGroup::measured)) {
@@ -45,7 +45,7 @@ std::vector<std::string> bodies_of(const Series& table) {
   return out;
 }
 
-/// Is it more than the rounding of zeros?
+/// Returns true if the values of a curve are more than rounding errors.
 bool shows(const io::Curve& curve) {
   return std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return std::abs(y) > 1e-12; });
 }

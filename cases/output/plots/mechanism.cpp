@@ -7,7 +7,8 @@ namespace {
 constexpr int kSamples = 400;
 constexpr const char* kTime = "time [s]";
 
-/// Names of drives that something uses: those of lengths and coordinates, and those of angles.
+/// Names of the drives that are used: drives of lengths and coordinates, and drives of angles. With
+/// a trajectory only the drives that follow from it are listed.
 struct UsedDrives {
   std::vector<std::string> lengths, angles;
 
@@ -124,7 +125,7 @@ std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
         }
       if (any) figure.panels.push_back(std::move(panel));
     };
-    // What a joint cannot transmit is zero but for rounding: no panel.
+    // A component that a joint cannot transmit is zero up to rounding and has no panel.
     if (joint.row->has_force) add({{"force_x", "x"}, {"force_y", "y"}}, "force [N]");
     if (joint.row->has_moment) add({{"moment", ""}}, "moment [N m]");
     add({{"power", ""}}, "power [W]");

@@ -3,8 +3,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Panels of observed columns: components of a point share one, and curves are named by what
-/// follows the last underscore.
+/// Adds panels of observed columns. The components of a point share a panel, and the curves are
+/// named by the text after the last underscore.
 void add_observed(const io::Axis& x, const std::vector<double>& at, const Series& table,
                   const std::string& what, io::Figure& figure) {
   for (const size_t c : table.of_group(ColumnGroup::observed)) {

@@ -11,13 +11,13 @@ namespace flexmorph::cases {
 
 namespace {
 
-/// The part of the area whose stress may exceed the lightest colour: peaks at corners would leave
-/// the rest dark.
+/// Fraction of the area whose stress may exceed the top of the colour scale; stress peaks at
+/// corners would otherwise leave the rest of the picture dark.
 constexpr double kPeaks = 0.005;
 
-/// The stress that triangles of so much area exceed.
+/// Returns the stress that is exceeded on the fraction kPeaks of the area.
 double all_but_peaks(const verification::OutlineVerification& j, const std::vector<double>& mises) {
-  std::vector<std::pair<double, double>> parts;  // stress, area
+  std::vector<std::pair<double, double>> parts;  // stress and area of every triangle
   double area = 0;
   for (std::size_t t = 0; t < j.mesh.triangles.size(); ++t) {
     double mean = 0;

@@ -7,11 +7,12 @@
 
 namespace flexmorph::cases {
 
-/// Why plates that are welded node on node cannot move on the cells of their designs; empty: they
-/// can, as nothing is welded so or both have as many cells across.
-/// @param parts  of a cell, each way
+/// Returns the reason why plates that are welded node to node cannot move on the cells of their
+/// designs; empty if no two plates are welded in this way, or if both have the same number of cells
+/// across.
+/// @param parts  elements per cell in each direction
 inline std::string unmatched_cells(const Scene& scene, int parts) {
-  const auto across = [&](const Body& body) {  // 0: no cells
+  const auto across = [&](const Body& body) {  // number of elements across; 0: not on cells
     for (const BodyDesign& design : scene.designs)
       if (design.body == body.name) return parts * design.grid.ny;
     return body.on_cells() ? body.elements[1] : 0;

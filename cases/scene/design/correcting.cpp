@@ -6,7 +6,8 @@
 #include "io/files.h"
 #include "optim/mmc/problem/motion_response.h"
 
-/// What follows the cycles of equivalent static loads: corrected cycles, and the certificate.
+/// Readers of the settings of corrected cycles, which follow the cycles of equivalent static loads,
+/// and of the optimality certificate.
 namespace flexmorph::cases {
 namespace {
 
@@ -63,7 +64,7 @@ const Key& kCheckpoints =
         .otherwise(0)
         .says("Parts whose states are kept one at a time: less memory, a motion more; 0: all.");
 
-/// Why the scene has no exact gradient; empty: it has one.
+/// Returns the reason why the motion of the scene has no exact gradient; empty if it has one.
 std::string no_gradient_because(const Scene& scene) {
   const TimeSpan& time = scene.time;
   if (time.tolerance) return "steps that adapt depend on the design (time.tolerance)";
@@ -83,7 +84,7 @@ std::string no_gradient_because(const Scene& scene) {
   return {};
 }
 
-/// Cell, step and checkpoints of a motion with its gradient.
+/// Reads cell, time step and number of checkpoints of a motion with its gradient.
 template <class To>
 void read_motion_keys(const Table& t, const Scene& scene, To& out) {
   out.step = t.number(kStep, scene.time.step);
@@ -95,7 +96,7 @@ void read_motion_keys(const Table& t, const Scene& scene, To& out) {
     return static_cast<int>(std::lround(out.cell / design.grid.dx()));
   };
   for (const BodyDesign& design : scene.designs) {
-    constexpr double kSame = 1e-3;  // cells need not be squares, nor round numbers
+    constexpr double kSame = 1e-3;  // relative: sides need not be equal, nor round numbers
     const Grid& g = design.grid;
     const int n = cells_in(design);
     if (n < 1 || std::abs(out.cell / (n * g.dx()) - 1) > kSame || g.nx % n != 0 || g.ny % n != 0)
@@ -112,7 +113,8 @@ std::vector<mmc::MotionRow> rows_minimized(const BodyDesign& design) {
   return mmc::motion_objectives({&goal, 1});
 }
 
-/// Goals that ask for what the scene does not have, or not for one thing.
+/// Throws if a goal needs something that the scene does not have, or if two designs give different
+/// weights to the same response of the mechanism.
 void check_goals(const Table& cycle, const Scene& scene) {
   for (const BodyDesign& design : scene.designs) {
     std::vector<const mmc::ResponseRow*> rows = mmc::rows_of(design.motion_goal);
@@ -128,7 +130,7 @@ void check_goals(const Table& cycle, const Scene& scene) {
       cycle.fail("\"deflection\" is that of a free end, and '" + design.body +
                  "' is a link between two pins");
   }
-  // A number of the whole mechanism counts once, however many designs name it.
+  // A response of the whole mechanism counts once, even if several designs name it.
   for (const BodyDesign& design : scene.designs)
     for (const mmc::MotionRow& row : rows_minimized(design))
       for (const BodyDesign& other : scene.designs)

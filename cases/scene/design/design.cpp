@@ -27,9 +27,9 @@ using io::Table;
 using io::to_text;
 
 constexpr double kMostCells = 4e6;
-constexpr int kMostBoxes = 100'000;  // of the initial layout, in each direction
+constexpr int kMostBoxes = 100'000;  // boxes of the initial layout, in each direction
 
-/// (lower, upper], the usual range of a fraction.
+/// Returns the range (0, upper] of a fraction.
 io::Quantity fraction(std::string noun, double upper = 1) {
   io::Quantity q = between(std::move(noun), "", 0, upper);
   q.lower_open = true;
@@ -143,7 +143,7 @@ const io::Choice<bool> kSharesMass(
         .says("`shared_mass`: one problem, and one budget of mass, of all that say so."),
     "a coupling", {{"none", false}, {"shared_mass", true}});
 
-/// The plate of a static scene as a body that does not move.
+/// Returns the plate of a static scene as a body that does not move.
 Body plate_of(const Domain& domain) {
   Body body;
   body.name = domain.name;
@@ -186,8 +186,9 @@ Grid read_grid(const Table& t, const Body& body, double end) {
   return grid;
 }
 
-/// Loads that equivalent static loads know: forces at nodes of the design mesh, and along the free
-/// end. Others would act in the motion and be missing in the design problem.
+/// Throws for loads on a designed body that equivalent static loads do not include. They include
+/// forces at nodes of the design mesh and along the free end; other loads would act in the motion
+/// but be missing in the design problem.
 void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
   const Grid& g = design.grid;
   const auto is_node = [&](const Vec2& point) {
@@ -207,7 +208,7 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
   }
 }
 
-/// Smallest widths of the union of components.
+/// Reads the smallest widths of material and gaps of the union of components.
 Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
   const double thick = std::min(2 * design.min_thickness, 0.5 * body.width);
   const bool paper = design.tdf.kind == TdfSettings::Kind::paper;
@@ -218,7 +219,7 @@ Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
   } else {
     out.solid = t.number(kMinFeature.within(0, 0.5 * body.width), paper ? 0.0 : thick);
   }
-  // The crisp design on cells sees no gap that is narrower than two cells.
+  // The crisp design on cells does not resolve gaps that are narrower than two cells.
   const double seen = std::min(2 * std::max(design.grid.dx(), design.grid.dy()), 0.5 * body.width);
   out.gap = t.number(kMinGap.within(0, 0.5 * body.width),
                      out.solid > 0 ? std::max(0.5 * out.solid, seen) : 0.0);
@@ -240,7 +241,8 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   design.tdf.kind = t.choice(kTdf);
   design.widths = read_widths(t, body, design);
 
-  constexpr double kRadius = 0.8;  // features: an arc of a quarter feature turns by 18 degrees
+  constexpr double kRadius =
+      0.8;  // in widths of `min_feature`: an arc of a quarter of this width turns by 18 degrees
   design.fillet_radius = t.number(kFilletRadius.within(0, 0.5 * body.width),
                                   std::min(kRadius * design.widths.solid, 0.5 * body.width));
   if (design.fillet_radius > 0 && design.widths.solid == 0)
@@ -287,7 +289,7 @@ void read_tdf(const Table& t, BodyDesign& design) {
   for (size_t i = 1; i < design.band.size(); ++i)
     if (design.band[i] >= design.band[i - 1]) t.fail(kBand, "bands go from coarse to fine");
   design.tdf.sharpness = t.number(kSharpness) / cell;
-  // Where any width is allowed, components have one of their own.
+  // If any width is allowed, the erosion refers to the smallest component.
   const double width = design.widths.solid > 0 ? design.widths.solid : 2 * design.min_thickness;
   design.erosion = t.number(kErosionWidth, paper ? 0.0 : 0.25) * (paper ? 1 : width);
   design.tdf.alpha = t.number(kAlpha);
@@ -298,13 +300,14 @@ void read_tdf(const Table& t, BodyDesign& design) {
   design.mass_void = t.number(kMassVoid);
 }
 
-/// Is the design solved with those of other bodies, under one budget of mass?
+/// Reads whether the design problem is solved together with the design problems of other bodies,
+/// under one budget of mass.
 void read_coupling(const Table& t, BodyDesign& design) {
   design.shares_mass = t.choice(kSharesMass);
   if (design.shares_mass) check_sharing(t, design.goal);
 }
 
-/// The design of a plate at rest: its grid lies where the domain does.
+/// Reads the design of a static plate, whose grid covers the domain.
 BodyDesign read_static_design(const Table& t, const Scene& scene) {
   BodyDesign design;
   const Domain& domain = *scene.domain;
@@ -323,7 +326,7 @@ BodyDesign read_static_design(const Table& t, const Scene& scene) {
   return design;
 }
 
-/// What is asked of the loads, and what of the motion itself.
+/// Reads the goals of the design for loads and of the motion itself.
 void read_goals(const Table& t, const Scene& scene, BodyDesign& design) {
   const mmc::Goal goal = read_goal(t, plate_of(scene, design));
   design.motion_goal = mmc::goal_of_motion(goal);

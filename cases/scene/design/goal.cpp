@@ -26,7 +26,7 @@ using io::Table;
 using io::to_text;
 using mmc::ResponseRow;
 
-/// What rows of the table have in this place, each once.
+/// Returns the values of a member of all rows of the table of responses, each once.
 std::vector<std::string> all_of(std::string_view ResponseRow::*member) {
   std::vector<std::string> out;
   for (const ResponseRow* row : mmc::responses()) {
@@ -36,7 +36,8 @@ std::vector<std::string> all_of(std::string_view ResponseRow::*member) {
   return out;
 }
 
-/// "volume", "mass": names of rows that have loads, or have none, for messages.
+/// Returns the names of responses that depend on loads (that do not), for messages: "volume",
+/// "mass".
 std::string names_of_rows(bool with_loads) {
   std::string out;
   for (const std::string& name : all_of(&ResponseRow::name))
@@ -102,13 +103,13 @@ const ResponseRow& read_row(const Table& t, const Key& key, const std::string& l
   return row;
 }
 
-/// To twelve digits: a full plate of 2 kg may be asked for.
+/// Rounds to twelve digits, so that the exact mass of a full plate, such as 2 kg, is a valid limit.
 double without_round_off(double value) {
   const double scale = std::pow(10, 12 - std::ceil(std::log10(value)));
   return std::round(value * scale) / scale;
 }
 
-/// A bound on a response: what a full plate has is the most there can be.
+/// Reads a bound on a response. The value of a full plate is its upper limit.
 void read_limit(const Table& t, const Key& key, const ResponseRow& row, const mmc::Plate& plate,
                 mmc::Goal& goal) {
   Key of_row = key.measured_in(std::string(row.unit));
@@ -119,7 +120,7 @@ void read_limit(const Table& t, const Key& key, const ResponseRow& row, const mm
 
 std::string noun_of(const ResponseRow& row) { return std::string("a ").append(row.words); }
 
-/// One [[design.objective]].
+/// Reads one [[design.objective]].
 void read_addend(const Table& t, const std::string& loads, const mmc::Plate& plate,
                  mmc::Goal& goal) {
   if (!goal.objective->of_motion)
@@ -134,7 +135,7 @@ void read_addend(const Table& t, const std::string& loads, const mmc::Plate& pla
   goal.addends.push_back({&row, t.number(kWeight)});
 }
 
-/// One [[design.constraint]].
+/// Reads one [[design.constraint]].
 void read_constraint(const Table& t, const std::string& design_loads, const mmc::Plate& plate,
                      mmc::Goal& goal) {
   const std::string loads = t.has(kItsLoads) ? t.choice(kItsLoads) : design_loads;
@@ -157,7 +158,7 @@ void read_constraint(const Table& t, const std::string& design_loads, const mmc:
     t.fail(kAtLeast, "no more than `at_most`");
 }
 
-/// max_volume and max_compliance: one of them, unless there are constraints.
+/// Reads max_volume or max_compliance; one of them is required unless there are constraints.
 void read_shorthand(const Table& t, const std::string& loads, const mmc::Plate& plate,
                     mmc::Goal& goal) {
   const bool wanted = t.tables(kConstraint).empty();

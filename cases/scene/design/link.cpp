@@ -6,7 +6,7 @@
 #include "io/files.h"
 #include "optim/mmc/problem/body_problem.h"
 
-/// Designed bodies that nothing clamps: links between two pins.
+/// Designed bodies that are not welded at their roots: links between two pins.
 namespace flexmorph::cases {
 namespace {
 
@@ -32,7 +32,7 @@ const io::Key& kBores = io::key("design", "bore_radius")
                             .when("joints hold the body at two points")
                             .says("Bores in the eyes, which pins fill in motions and loads.");
 
-/// Cells around a pin that are solid: those whose centres are nearer [cells].
+/// Radius around a pin within which cells must be solid, by their centres [cells].
 constexpr double kSolidReach = 1.5;
 
 std::string words(const Vec2& point) {

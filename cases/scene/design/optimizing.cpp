@@ -7,7 +7,7 @@
 #include "geometry/text.h"
 #include "io/files.h"
 
-/// What goes on around designs: [esl], [optimizer], [cycle], [verify].
+/// Readers of the settings around designs: [esl], [optimizer], [cycle], [verify].
 namespace flexmorph::cases {
 namespace {
 
@@ -162,7 +162,8 @@ Esl read_esl(const Table& t, const Scene& scene) {
       t.fail(kDefinition,
              "'" + design.body + "' is a link between two pins: \"inertia\" or \"frozen\" loads");
 
-  // A root that drives move at will is taken to be on the nearest mesh line.
+  // At constant speed the root must be on a mesh line at every load. A root that a drive moves is
+  // taken to be on the nearest mesh line.
   for (const BodyDesign& design : scene.designs) {
     const Body& body = scene.body(design.body);
     if (!body.flow || body.flow->speed == 0) continue;
@@ -175,7 +176,7 @@ Esl read_esl(const Table& t, const Scene& scene) {
   return esl;
 }
 
-/// The table of options of one optimizer, into `s`, whose other settings are there.
+/// Reads the table of options of one optimizer into `s`, whose other settings are set.
 void read_options(const Table& t, const Key& table, const Key& one, optim::Settings& s) {
   if (t.has(table)) {
     const Table options = t.table(table);
@@ -184,7 +185,7 @@ void read_options(const Table& t, const Key& table, const Key& one, optim::Setti
   try {
     optim::Settings checked = s;
     checked.max_iterations = std::max(1, s.max_iterations);
-    optim::make_optimizer(checked);  // only it knows its options and their ranges
+    optim::make_optimizer(checked);  // the optimizer checks its options and their ranges
   } catch (const Error& error) {
     const std::string what = error.what();
     for (const auto& [key, value] : s.options)
@@ -206,9 +207,10 @@ optim::Settings read_optimizer(const Table& t) {
   s.rest = {.rows = t.integer(kRestIterations),
             .objective = t.number(kRestObjective),
             .kkt = t.number(kRestKkt)};
-  // Ipopt's first steps are far longer than a component; in a moving box they are not.
-  // Far from a minimum, Hessians are indefinite and serve less than quasi-Newton ones, whose steps
-  // see more than the ripples of the grid: blurred compliances of the short beam 82.3 and 78.9.
+  // Without limits the first steps of Ipopt are far longer than a component; a moving box limits
+  // them. Far from a minimum exact Hessians are indefinite and less useful than quasi-Newton
+  // matrices, which do not resolve the ripples due to the grid: the smoothed compliances of the
+  // short beam are 82.3 and 78.9.
   if (s.name == "ipopt") {
     s.options.try_emplace("box", 0.1);
     s.options.try_emplace("exact", 0);
@@ -221,7 +223,7 @@ constexpr const char* kNoHeat = "heat does not know cells";
 constexpr const char* kNoDiscreteGradient =
     "void on cells has no discrete gradient for \"energy_momentum\"";
 
-/// What a body on cells cannot be.
+/// Throws if a body cannot move on cells.
 void check_on_cells(const Table& t, const Scene& scene, const Body& body) {
   const std::string name = "'" + body.name + "' ";
   if (body.in_space()) t.fail(kCells, name + "lives in space: cells cannot bend out of the plane");
@@ -261,8 +263,8 @@ Verify read_verify(const Table& t, const Scene& scene) {
   return verify;
 }
 
-/// The point whose deflection cycles are compared by: "BODY" of a tip, "BODY.NAME" of an observed
-/// point of a designed body.
+/// Reads the point whose deflection compares the cycles: "BODY" for a tip, "BODY.NAME" for an
+/// observed point of a designed body.
 std::string read_compare_point(const Table& cycle, const Scene& scene) {
   std::vector<std::string> points;
   for (const BodyDesign& design : scene.designs) {
@@ -299,7 +301,7 @@ void read_designs(const Table& root, Scene& scene) {
       scene.refuse("time.integrator", kNoDiscreteGradient);
     if (body.heat) scene.refuse("body.heat", kNoHeat);
   }
-  if (root.has(tables::kDesign))  // designs ask how many iterations there are
+  if (root.has(tables::kDesign))  // without a design, [optimizer] is an error below
     scene.optimizer = read_optimizer(root.table_or_empty(tables::kOptimizer));
   std::vector<Table> sharing;
   for (const Table& t : root.tables(tables::kDesign)) {

@@ -4,7 +4,7 @@
 #include "io/files.h"
 #include "optim/mmc/problem/body_problem.h"
 
-/// [[design.solid]], [[design.void]].
+/// Readers of [[design.solid]] and [[design.void]].
 namespace flexmorph::cases {
 namespace design_keys {
 
@@ -68,7 +68,7 @@ using Ring = std::vector<Vec2>;
 
 bool holds(const Ring& ring, const Vec2& p) { return contains({ring, {}}, p); }
 
-/// Cells of a grid that belong to one of the regions: 1 (n_cells).
+/// Returns 1 for every cell of a grid that belongs to one of the regions, else 0 (n_cells).
 std::vector<signed char> cells_in(const Grid& grid, std::span<const Ring> rings) {
   std::vector<signed char> in(static_cast<size_t>(grid.n_cells()), 0);
   for (const Ring& ring : rings)
@@ -76,7 +76,8 @@ std::vector<signed char> cells_in(const Grid& grid, std::span<const Ring> rings)
   return in;
 }
 
-/// The same of the domain of a plate.
+/// Returns 1 for every cell in the domain of a plate that belongs to one of the regions, else 0
+/// (n_cells).
 std::vector<signed char> cells_in(const mmc::Plate& plate, std::span<const Ring> rings) {
   std::vector<signed char> in = cells_in(plate.grid, rings);
   for (size_t cell = 0; cell < plate.outside.size(); ++cell)
@@ -103,14 +104,15 @@ Ring read_box(const Table& t) {
   return corners_of({{b[0], b[1]}, {b[2], b[3]}});
 }
 
-/// @param tolerance  of its sides, beside that of outlines [m]
+/// Reads a disc as a polygon.
+/// @param tolerance  largest error of its sides; the tolerance of outlines is a limit, too [m]
 Ring read_disc(const Table& t, const Grid& grid, double tolerance) {
   const std::vector<double> d = t.numbers(kDisc);
   if (d[2] <= 0) t.fail(kDisc, "a radius is positive, in the order x, y, radius [m]");
   return circle_within({d[0], d[1]}, d[2], std::min(tolerance, mmc::kOutlineTolerance * grid.dx()));
 }
 
-/// One [[design.solid]] or [[design.void]].
+/// Reads one [[design.solid]] or [[design.void]].
 Ring read_region(const Table& t, const mmc::Plate& plate, double tolerance) {
   const Grid& grid = plate.grid;
   if (t.has(kBox) + t.has(kStrip) + t.has(kDisc) + t.has(kPolygon) != 1)
@@ -128,13 +130,13 @@ Ring read_region(const Table& t, const mmc::Plate& plate, double tolerance) {
   return ring;
 }
 
-/// Do they share more than round-off leaves along a common border?
+/// Returns true if two regions overlap by more than the rounding errors along a common border.
 bool overlap(const Ring& a, const Ring& b, const Grid& grid) {
   return area(unite({&a, 1}, {b, {}}, {})) > 1e-6 * grid.dx() * grid.dy();
 }
 
-/// What sits at the free end needs solid material there: without it the mass would end up in the
-/// void (optim/README.md, Passive regions).
+/// Throws if a point mass or a weld at the free end is not on solid material, because the design
+/// could otherwise have void there (optim/README.md, Passive regions).
 void check_free_end(const Table& t, const Body& body, const Scene& scene,
                     const BodyDesign& design) {
   const Grid& grid = design.grid;
@@ -155,7 +157,7 @@ void check_free_end(const Table& t, const Body& body, const Scene& scene,
     return j.body == body.name && j.edge == "free_end";
   });
   const auto in = cells_in(grid, design.solid);
-  const auto last = std::min(in.size(), static_cast<size_t>(2 * grid.ny));  // two columns
+  const auto last = std::min(in.size(), static_cast<size_t>(2 * grid.ny));  // cells of two columns
   if (welded && std::count(in.end() - static_cast<std::ptrdiff_t>(last), in.end(), 1) < 2 * grid.ny)
     t.fail("the welded free end of '" + body.name + strip);
 }

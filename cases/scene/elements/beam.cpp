@@ -35,8 +35,8 @@ const Key& kArc = io::key("body", "arc")
                       .when("beams")
                       .says("Angle that its axis turns by without stress; 0: it is straight.");
 
-/// How the end of a beam is welded: its section keeps its direction and is free to grow (partial);
-/// it keeps direction and size (edge); the axis is not stretched, either (full).
+/// Mode of a welded end of a beam: the section keeps its direction and is free to grow (partial),
+/// or it keeps direction and size (edge), or the axis is not stretched, either (full).
 const io::Choice<fem::WeldMode> kBeamMode(
     io::key("joint", "mode")
         .otherwise("partial")
@@ -74,7 +74,7 @@ std::unique_ptr<fem::Element> make_beam(const Body& body, double /*end*/,
                                          fem::arc_reference(body.length, body.arc, count[0]));
 }
 
-/// By Gauss points.
+/// Estimates the operations from the number of Gauss points.
 ElementOperations operations(const Body&, const fem::Element& element) {
   const double points = 15, unknowns = element.n_shapes() * element.dim();
   return {points * 300, points * 4 * unknowns * unknowns};

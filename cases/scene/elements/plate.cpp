@@ -40,7 +40,8 @@ const io::Key& kElements = io::key("body", "elements")
                                .integers("a number of elements", 1, kMostElements, 2, 2)
                                .when("plates")
                                .says("Elements along the length at the start, and across.");
-/// What is stored, and where.
+
+/// Reads the model of the material reservoir, its location and the length of the stored material.
 void read_stored(const Table& t, Flow& flow) {
   const std::string stored = t.choice(flow_keys::kStored);
   flow.stored = stored == "coil" ? Stored::coil : stored == "rod" ? Stored::rod : Stored::none;
@@ -73,13 +74,13 @@ Flow read_flow(const Table& t, const Scene& scene, bool on_cells) {
       if (t.has(*limit)) t.fail(*limit, "cells (shape \"q4\") have no limits of their own");
     return flow;
   }
-  // What is not given, settle_mesh() settles.
+  // settle_mesh() determines the values that are not given.
   if (t.has(flow_keys::kMaxLength)) flow.max_length = t.number(flow_keys::kMaxLength);
   if (t.has(flow_keys::kMinLength)) flow.min_length = t.number(flow_keys::kMinLength, 0.0);
   return flow;
 }
 
-/// All but its flow and its lines.
+/// Reads all keys of a plate except `flow` and `line`.
 void read_sheet(const Table& t, const Scene& scene, bool has_density, Body& body) {
   body.shape = t.choice(kShape);
   body.space = t.choice(kSpace);
@@ -90,7 +91,7 @@ void read_sheet(const Table& t, const Scene& scene, bool has_density, Body& body
   if (scene.is_mechanism() && body.in_space())
     t.fail(kSpace, "rigid bodies live in the plane: in their scenes plates do, too");
   read_terms(t, scene, body);
-  // A drive of the length says how it starts, too.
+  // A drive of the length determines the initial length, too.
   const bool driven = t.has(kFlow) && t.table(kFlow).has(flow_keys::kLength);
   body.length = t.number(kLength, driven ? std::optional<double>(0) : std::nullopt);
   body.width = t.number(kWidth);
@@ -126,8 +127,8 @@ void read_flowing_plate(const Table& t, const Scene& scene, bool has_density, Bo
   read_mesh(t, body);
 }
 
-/// Lines of cells from the free end to a root that lies among them: it has a quarter of a cell in
-/// front of it at least.
+/// Returns the lines of cells from the free end to a root that lies between them. The element at
+/// the root is at least a quarter of a cell long.
 std::vector<double> cell_lines(double root, double longest, double cell) {
   std::vector<double> out;
   for (int k = 0; longest - k * cell > root + kShortestCell * cell; ++k)
@@ -137,8 +138,9 @@ std::vector<double> cell_lines(double root, double longest, double cell) {
   return out;
 }
 
-/// A line that stays so much of the length L(t) before the free end, p = p_end - share L(t): of an
-/// even mesh of n elements line i with share 1 - i/n, and of every mesh the root.
+/// Returns the material coordinate p = p_end - share L(t) of a line whose distance from the free
+/// end is a constant fraction of the length L(t). Line i of a uniform mesh of n elements has the
+/// fraction 1 - i/n; the root of every mesh has the fraction 1.
 std::function<fem::Motion(double)> line_drive(const Body& body, double end, double share) {
   if (body.flow->motion)
     return [end, share, length = body.flow->motion](double t) {
@@ -172,15 +174,16 @@ std::unique_ptr<fem::Element> make_plate(const Body& body, double end,
   return std::make_unique<fem::AncfPlate>(body.dim(), shapes, std::move(m), std::move(n));
 }
 
-/// Gram form: n_p pairs of vectors in four classes, products and sums for d directions; and the
-/// Gauss points of the bending, where there are any.
+/// Estimates the operations of the Gram form, with n_p pairs of vectors in four classes and
+/// products and sums for d directions, and of the Gauss points of bending, if there are any.
 ElementOperations operations(const Body& body, const fem::Element& element) {
   const double n = element.n_shapes(), d = element.dim(), pairs = 0.5 * n * (n + 1);
   const double line = body.number("bending_points"), points = line * line;
   ElementOperations out;
   out.force = 2 * n * n * d * (body.flow ? 3 : 1);  // inertia
   out.force += 0.5 * pairs * pairs + 2 * pairs * d + 2 * n * n * d;
-  // Functions of m, then of n, and back: 3 derivatives, 5 vectors (fem/terms/bending_kernels.h).
+  // Sum factorization over m, then over n, and back: 3 derivatives, 5 vectors
+  // (fem/terms/bending_kernels.h).
   out.force += n * (line * 2 * 2 * 3 * d + points * (2 * 2 * 5 * d / 4 + 10));
   out.tangent = n * d * (n * pairs + n * n * d) + 2 * points * n * d * n * d;
   return out;

@@ -11,7 +11,7 @@ using namespace heat_keys;
 using io::Key;
 using io::Table;
 
-/// How the temperature goes with time.
+/// Reads the time profile of the temperature rise.
 void read_course(const Table& t, const Scene& scene, BodyHeat& heat) {
   const bool driven = !heat.rise.drive.empty();
   if (scene.statics || driven) {

@@ -4,17 +4,17 @@
 
 #include "cases/scene/scene.h"
 
-/// [body.heat] as data.
+/// The temperature rise of a body: [body.heat].
 namespace flexmorph::cases {
 
-/// [body.heat]; the body's other keys are read.
+/// Reads the table [body.heat]; the other keys of the body must be read before.
 /// @throws Error (input) located in the file.
 BodyHeat read_heat(const io::Table& t, const Scene& scene, const Body& body);
 
-/// "grown", "grown_plane" or "reference", as in a case.
+/// Returns the name of a thermal volume in cases: "grown", "grown_plane" or "reference".
 std::string volume_name(fem::ThermalVolume volume);
 
-/// "quartic rise of 50 K in 1 s".
+/// Returns a temperature rise as text, such as "step of the temperature by 50 K at 1 s".
 std::string temperature_words(const BodyHeat& heat);
 
 }  // namespace flexmorph::cases

@@ -3,7 +3,7 @@
 #include "fem/heat.h"
 #include "io/case_files/key.h"
 
-/// Keys of [body.heat], also where heat was left out of the program.
+/// Keys of [body.heat].
 namespace flexmorph::cases::heat_keys {
 
 extern const io::Key &kExpansion, &kRise, &kProfile, &kStart, &kSettle, &kForce;

@@ -1,7 +1,7 @@
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/joints/row.h"
 
-/// Joints between places on two bodies without laws, see fem/body_joints.h.
+/// Joints between anchors on two bodies that prescribe no motion, see fem/body_joints.h.
 namespace flexmorph::cases {
 namespace {
 

@@ -1,7 +1,7 @@
 #include "cases/scene/joints/reading.h"
 #include "cases/scene/joints/row.h"
 
-/// Edges of plates in space that are held where they are in the undeformed plate.
+/// Joints that hold edges of plates in space at their locations in the undeformed plate.
 namespace flexmorph::cases {
 namespace {
 

@@ -19,14 +19,16 @@ Joint read_joint(const Table& t, const Scene& scene) {
   return joint;
 }
 
-/// Held edges are held where the undeformed body lies: not turned, not shifted.
+/// Throws if a body with held edges is also in a hub or a sleeve, because held edges keep the
+/// locations of the undeformed body, which a hub or sleeve may turn or shift.
 void check_held(const Table& t, const Joint& joint, const Scene& scene) {
   for (const Joint& other : scene.joints)
     if (joint.holds_edges() && other.body == joint.body && other.holds_frame())
       t.fail(joint_keys::kType, "'" + joint.body + "' sits in a hub or sleeve: hold it there");
 }
 
-/// A line that nothing moves through the material would be an unknown without an equation.
+/// Throws if no joint holds or drives a free line, because its material coordinate would be an
+/// unknown without an equation.
 void check_lines(const Table& t, const Body& body, const Scene& scene) {
   for (const BodyLine& line : body.lines) {
     if (!line.free) continue;
@@ -40,7 +42,8 @@ void check_lines(const Table& t, const Body& body, const Scene& scene) {
   }
 }
 
-/// Material is stored in rigid bodies: hubs move as they are driven, whatever they store.
+/// Throws if a body with a material reservoir leaves a hub. Stored material acts on rigid bodies
+/// only, because the motion of a hub is prescribed.
 void check_stored(const Table& t, const Body& body, const Scene& scene) {
   if (!body.flow || body.flow->stored == Stored::none) return;
   for (const Joint& joint : scene.joints)
@@ -64,7 +67,7 @@ const io::Key& joint_keys::kType = io::key("joint", "type")
                                        .says("Its kind.");
 
 std::vector<Joint> read_joint_list(const Table& root, const Scene& scene) {
-  Scene growing = scene;  // a joint must fit together with those before it
+  Scene growing = scene;  // each joint is checked against the joints before it
   for (const Table& t : root.tables(tables::kJoint))
     growing.joints.push_back(read_joint(t, growing));
   return growing.joints;

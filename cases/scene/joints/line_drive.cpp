@@ -61,7 +61,7 @@ std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
   };
   if (!joint.at.drive.empty()) motion = parts.scene.motion_of(joint.at);
   const auto number = std::count_if(body.lines.begin(), body.lines.end(), [&](const BodyLine& l) {
-    return l.free && l.index < joint.line;  // among the free lines of its body
+    return l.free && l.index < joint.line;  // lines before it among the free lines of its body
   });
   return fem::make_line_drive(joint.name, joint.body, static_cast<int>(number), std::move(motion));
 }

@@ -42,7 +42,7 @@ PlaneCurve read_curve(const io::Table& t, const Scene& scene) {
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   joint.a = read_anchor(t, kAnchorA, scene, true, true);
   joint.b = read_anchor(t, kAnchorB, scene, true, false);
-  joint.a.given = joint.b.given = true;  // on the ground [0, 0]
+  joint.a.given = joint.b.given = true;  // the default on the ground is [0, 0]
   if (joint.a.on_ground() && joint.b.on_ground())
     t.fail(
         "a body is missing: `a` carries the curve, `b` the point; one of them may be the ground");

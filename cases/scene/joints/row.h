@@ -12,22 +12,24 @@
 #include "fem/body_joints.h"
 #include "fem/dynamics/starts/rigid_kinematics.h"
 
-/// The shelf of joints: all that the program knows of a kind of [[joint]] stands in one file of
-/// this folder, and table.cpp lists it.
+/// The table of joints: everything that is specific to one kind of [[joint]] is in one file of this
+/// folder, and table.cpp lists all kinds.
 namespace flexmorph::cases {
 
-/// What the maker of a joint may ask of the model that it becomes part of.
+/// The data of a model under construction that JointRow::make() may use.
 struct JointParts {
-  const Scene& scene;
-  bool rigid = false;         ///< in the rigid kinematic model, where plates and beams do not bend
-  fem::MarkerPlace a{}, b{};  ///< of joints between bodies: both places, found in the model
-  double angle_a = 0, angle_b = 0;  ///< of their first axes at the start, in the world [rad]
-  /// Place of a material point of the joint's body, in the model; and in the world at the start
-  /// [m].
+  const Scene& scene;         ///< Scene that is built.
+  bool rigid = false;         ///< True in the rigid kinematic model (undeformed plates and beams).
+  fem::MarkerPlace a{}, b{};  ///< Anchors of a joint between bodies, as locations in the model.
+  double angle_a = 0, angle_b = 0;  ///< Angles of their first axes at the start [rad].
+
+  /// Location of a material point of the joint's body in the model; for joints on one body.
   std::function<fem::MarkerPlace(const Vec2& material)> place{};
+  /// Position of a material point of the joint's body at the start, in the world [m]; for joints on
+  /// one body.
   std::function<Vec3(const Vec2& material)> start{};
 
-  /// The laws of a joint.
+  /// Returns the i-th law of a joint as a function of time.
   std::function<fem::Motion(double)> law(const Joint& joint, size_t i) const {
     return scene.motion_of(joint.laws[i]);
   }
@@ -35,33 +37,38 @@ struct JointParts {
 
 /// A row of the table of joints.
 struct JointRow {
-  const char* name;      ///< as cases say it: type = "revolute"
-  const char* sentence;  ///< what it does
-  /// Reads the keys of its entry, and checks that it fits to what the scene has so far.
+  const char* name;      ///< Name in case files: type = "revolute".
+  const char* sentence;  ///< Sentence that describes the joint.
+
+  /// Reads the keys of a joint, and checks it against the joints and bodies read so far.
   /// @throws Error (input) located in the file
   void (*read)(const io::Table& t, const Scene& scene, Joint& joint);
-  /// The joint of the model, or nothing where the model does not need it (in the rigid kinematic
-  /// model no lines move). Edges in hubs, in sleeves and on rigid bodies are made by those who know
-  /// how plates grow (assembly/mechanism.cpp), held edges from `held`: they have no maker.
+  /// Creates the joint of the model, or null if the model does not need it: in the rigid kinematic
+  /// model no lines move. It is null for joints without such a function: edges in hubs, in sleeves
+  /// and on rigid bodies, which assembly/mechanism.cpp creates, and held edges, see `held`.
   std::unique_ptr<fem::Joint> (*make)(const Joint& joint, const JointParts& parts) = nullptr;
-  /// What it holds at one edge of a plate in space.
+  /// Returns the vector components that are held at one edge of a plate in space.
   std::vector<fem::Held> (*held)(const Joint& joint, const std::string& edge) = nullptr;
-  /// What its first law prescribes, as the frames of its two places say it: a drive that follows
-  /// from a trajectory is found that way.
+  /// Coordinate that the first law prescribes, as a function of the frames at its two anchors.
+  /// Inverse kinematics uses it to determine a drive that follows from a trajectory.
   fem::JointCoordinate coordinate = nullptr;
 
-  bool drives_angle = false;  ///< its laws are angles [rad], not lengths or coordinates [m]
-  bool on_one_body = false;   ///< it acts on place a alone; its columns are of that body
-  bool holds_point = false;   ///< stresses of a plate are singular where it holds a material point
-  /// What can be other than zero in its columns `force_x`, `force_y` and `moment`, and is drawn.
+  bool drives_angle = false;  ///< True if its laws are angles [rad], not lengths [m].
+  bool on_one_body = false;   ///< True if it acts on a alone; its columns then refer to that body.
+  bool holds_point = false;   ///< True if it holds a material point of a plate (singular stress).
+
+  /// True if it can transmit a force (a moment): its columns are then drawn.
   bool has_force = true, has_moment = false;
 };
 
-/// All rows, in the order in which messages list them.
+/// Returns all rows, in the order in which messages list them.
 std::span<const JointRow* const> joint_rows();
 /// Returns the row of this name; null where there is none.
 const JointRow* find_joint(std::string_view name);
-/// Adds a row, see Registry::add(). Keys that it reads are declared with io::key().
+/// Adds a row to the table of joints, see Registry::add(). The row declares the keys that it reads
+/// with io::key().
+/// @throws Error (input) if the row lacks read(), or both of make() and held(), or for a name that
+///         is taken
 void register_joint(const JointRow& row);
 
 }  // namespace flexmorph::cases

@@ -51,14 +51,15 @@ const io::Choice<fem::WeldMode> kJoining(
      {"edge", fem::WeldMode::edge},
      {"full", fem::WeldMode::full}});
 
-/// The frame on a rigid body that the edge is welded to.
+/// Reads the frame on a rigid body to which the edge is welded.
 void read_carrier(const io::Table& t, Joint& joint) {
   joint.b.body = joint.to;
   joint.b.point = read_pair(t, kPoint);
   joint.b.angle = t.number(kAngle);
 }
 
-/// What a weld makes one: an edge of a plate or beam, a rigid body, or all that hubs hold.
+/// One side of a weld: an edge of a plate or beam, a rigid body, or the ground, which stands for
+/// all hubs and sleeves.
 using Part = std::pair<std::string, std::string>;  // body, edge
 
 Part edge_part(const Scene& scene, const Joint& joint) {
@@ -66,15 +67,16 @@ Part edge_part(const Scene& scene, const Joint& joint) {
   return {joint.body, last ? "free_end" : joint.line == 0 ? "root" : joint.edge};
 }
 
-/// Both sides of a weld; {} twice of all other joints.
+/// Returns both sides of a weld; for all other joints two empty sides.
 std::array<Part, 2> parts_of(const Scene& scene, const Joint& joint) {
   if (joint.joins_edges()) return {{{joint.a.body, joint.edge_a}, {joint.b.body, joint.edge_b}}};
   if (joint.holds_frame()) return {edge_part(scene, joint), Part{joint.b.body, ""}};
   return {};
 }
 
-/// Edges that are one by other welds would be held twice: a row more than there are freedoms, which
-/// no solver forgives.
+/// Throws if other welds already connect both sides of a joint. The second connection would add
+/// constraint rows that depend on the others, so that the constraint Jacobian would be rank
+/// deficient.
 void refuse_second_weld(const io::Table& t, const io::Key& key, const Scene& scene,
                         const Joint& joint) {
   const auto [from, to] = parts_of(scene, joint);
@@ -90,7 +92,8 @@ void refuse_second_weld(const io::Table& t, const io::Key& key, const Scene& sce
     t.fail(key, "other welds make these one already: of a chain that closes leave out one");
 }
 
-/// An edge in a hub or on a rigid body; which also says where the body begins.
+/// Reads the weld of an edge to a hub or a rigid body, which also determines the location of the
+/// body at the start.
 void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
   const Body& body = read_jointed_body(t, scene, joint);
   const std::vector<std::string> rigid = names_of(scene.rigid_bodies);
@@ -109,12 +112,13 @@ void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
   refuse_second_weld(t, joint_keys::kEdge, scene, joint);
 }
 
-/// The keys of an edge of a weld: of its body, and of the edge.
+/// The keys of one edge of a weld: of its body and of the edge.
 struct EdgeKeys {
   const io::Key &body, &edge;
 };
 
-/// The end of a plate or beam as a place of a weld: in the plane, of material that stays.
+/// Returns the end of a plate or beam as an anchor of a weld. The body must be in the plane, and
+/// the edge must not move through the material.
 Anchor anchor_at(const io::Table& t, const EdgeKeys& keys, const Body& body, double run_end,
                  const std::string& edge) {
   if (body.in_space()) t.fail(keys.body, "plates in space are not welded to other bodies");
@@ -130,7 +134,7 @@ Anchor anchor_at(const io::Table& t, const EdgeKeys& keys, const Body& body, dou
   return {body.name, {root ? 0 : body.longest(run_end), 0}, root ? 0 : body.arc};
 }
 
-/// Their edges are one line, node by node.
+/// Checks that the edges of two plates coincide node by node.
 void check_plates(const io::Table& t, const Body& a, const Body& b, const Joint& joint,
                   double angle) {
   if (std::abs(std::sin(angle)) > 1e-9)
@@ -145,7 +149,8 @@ void check_plates(const io::Table& t, const Body& a, const Body& b, const Joint&
     t.fail(kJoining, "only beams are welded partially: \"edge\" or \"full\"");
 }
 
-/// Plates and beams at their edges: a is the body it is welded to, b the one that is welded.
+/// Reads the weld of two plates or beams at their edges: a is the body that `to` names, b the body
+/// that `body` names.
 void read_joined_edges(const io::Table& t, const Scene& scene, Joint& joint) {
   const Body& b = scene.body(read_flexible(t, joint_keys::kBody, scene));
   const Body& a = scene.body(t.choice(kTo, names_of(scene.bodies)));
