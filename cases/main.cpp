@@ -15,7 +15,7 @@
 #include "cases/check/ready.h"
 #include "cases/keys/book.h"
 #include "cases/keys/completion.h"
-#include "cases/process/blas_room.h"
+#include "cases/process/blas_buffers.h"
 #include "cases/process/processor.h"
 #include "cases/results/schema.h"
 #include "cases/run/corrections.h"
@@ -37,106 +37,161 @@ namespace {
 using flexmorph::Error;
 using namespace flexmorph::cases;
 
+/// A command of the program: its options, and the function that executes it.
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+  bool computes = true;  ///< True if the command needs the buffers of OpenBLAS.
+};
+
+/// Returns a command that prints a text.
+Command printing(CLI::App* app, const std::function<std::string()>& text, bool computes = false) {
+  return {app,
+          [text] {
+            std::fputs(text().c_str(), stdout);
+            return 0;
+          },
+          computes};
+}
+
+/// Exit codes, for the end of help texts.
+constexpr const char* kExitCodes =
+    "Exit codes:\n"
+    "  0  done    1  internal error    2  invalid input    4  interrupted\n"
+    "  3  numerical failure, a failed run of a study, or a WRONG run of `stability`\n"
+    "  5  done, but an expectation of the case is violated, or the result is not usable";
+
+/// Adds a command with an example of its use.
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& text,
+                      const std::string& example) {
+  CLI::App* command = app.add_subcommand(name, text);
+  const std::string shown = example.empty() ? name : name + " " + example;
+  command->footer("Example:\n  flexmorph " + shown + "\n\n" + kExitCodes);
+  return command;
+}
+
+/// Adds an option with a value, which the help text calls `shown`.
+template <class T>
+CLI::Option* add_value(CLI::App& command, const std::string& names, T& value,
+                       const std::string& shown, const std::string& text) {
+  return command.add_option(names, value, text)->type_name(shown);
+}
+
+/// Adds an option with a number; the help text ends with its range and, except for 0, its default.
+template <class T>
+void add_number(CLI::App& command, const std::string& names, T& value, T low, T high,
+                const std::string& text) {
+  using flexmorph::io::to_text;
+  const std::string range = text + ", " + to_text(low) + " to " + to_text(high);
+  add_value(command, names, value, "NUMBER",
+            value == T() ? range : range + " (default " + to_text(value) + ")")
+      ->check(CLI::Range(low, high).description(""));
+}
+
+/// Adds an option that may be given several times.
+CLI::Option* add_repeated(CLI::App& command, const std::string& name,
+                          std::vector<std::string>& values, const std::string& shown,
+                          const std::string& text) {
+  return add_value(command, name, values, shown, text)->take_all()->allow_extra_args(false);
+}
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+  add_repeated(command, "--set", overrides, "KEY=VALUE",
+               "changes a key of the case; KEY= without a value removes the key");
+}
+
+void add_threads(CLI::App& command, int& threads) {
+  add_number(command, "--threads", threads, 1, 256,
+             "number of threads of a run for loads, cells and independent motions");
+}
+
+void add_jobs(CLI::App& command, int& jobs) {
+  add_number(command, "--jobs", jobs, 1, 1024, "number of processes at the same time");
+}
+
 void add_case(CLI::App& command, std::string& name, std::vector<std::string>& overrides) {
-  command.add_option("case", name, "case file, or name of a shipped case")->required();
-  command.add_option("--set", overrides, "KEY=VALUE, changes the case")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_value(command, "case", name, "CASE", "case file, or name of a shipped case")->required();
+  add_overrides(command, overrides);
 }
 
-void add_study(CLI::App& command, StudyOptions& study) {
+void add_study(CLI::App& command, StudyOptions& study, const std::string& folder) {
   add_case(command, study.case_name, study.overrides);
-  command.add_option("-o,--output", study.directory, "folder of the study");
-  command.add_option("--jobs", study.jobs, "processes at a time")->check(CLI::Range(1, 1024));
-  command.add_option("--threads", study.threads, "threads of each")->check(CLI::Range(1, 256));
-  command.add_flag("--quiet", study.quiet, "no progress");
+  add_value(command, "-o,--output", study.directory, "FOLDER",
+            "folder of the study (default " + folder + ")");
+  add_threads(command, study.threads);
+  command.add_flag("--quiet", study.quiet, "prints no progress");
 }
 
-CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::vector<std::string>& cycles) {
-  CLI::App* command = app.add_subcommand(
-      "compare", "runs a case with several optimizers from the same starts and compares them");
-  add_study(*command, options.study);
-  command->add_option("--optimizers", options.optimizers, "names, with commas (default: all)")
+Command compare_command(CLI::App& app, CompareOptions& options, std::vector<std::string>& cycles) {
+  CLI::App* command = add_command(app, "compare", "compares optimizers from common starts",
+                                  "short_beam --optimizers mma,ipopt --starts 3 --jobs 2");
+  add_study(*command, options.study, "runs/compare_NAME");
+  add_jobs(*command, options.study.jobs);
+  add_value(*command, "--optimizers", options.optimizers, "NAME,...", "names (default: all)")
       ->delimiter(',');
-  command
-      ->add_option("--cycles", cycles,
-                   "instead of optimizers: esl, corrected, direct (which see the motion itself)")
+  add_value(*command, "--cycles", cycles, "NAME,...", "compares cycles: esl, corrected, direct")
       ->delimiter(',');
-  command->add_option("--starts", options.starts, "the case's own start and jittered ones")
-      ->check(CLI::Range(1, 10000));
-  command->add_option("--jitter", options.jitter, "of the starts, in parts of components' sizes")
-      ->check(CLI::Range(0.0, 1.0));
-  command->add_option("--budget", options.budget, "state solves of each run")
-      ->check(CLI::Range(1, 100'000'000));
-  return command;
+  add_number(*command, "--starts", options.starts, 1, 10000,
+             "number of starts: the start of the case, and starts with jitter");
+  add_number(*command, "--jitter", options.jitter, 0.0, 1.0,
+             "jitter of the starts as a fraction of the sizes of the components");
+  add_number(*command, "--budget", options.budget, 1, 100'000'000,
+             "number of state solves of each run (default: iterations of the case + 1)");
+  return {command, [&] {
+            return cycles.empty() ? compare_case(options) : compare_cycles({options.study, cycles});
+          }};
 }
 
-CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
-  CLI::App* command =
-      app.add_subcommand("sweep", "runs a case with every combination of values and collects");
-  add_study(*command, options.study);
-  command
-      ->add_option("--vary", options.vary,
-                   "KEY=V1,V2,... (case=A,B: whole cases); several make combinations")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--index", options.index, "only this variant, from 1 (job arrays)")
-      ->check(CLI::Range(1, 1'000'000));
-  command->add_flag("--list", options.list, "prints the variants");
-  command->add_option("--reference", options.reference,
-                      "CSV with columns of motion.csv, drawn as points (scenes without a design)");
-  return command;
+Command sweep_command(CLI::App& app, SweepOptions& options) {
+  CLI::App* command = add_command(app, "sweep", "runs a case with all combinations of values",
+                                  "short_beam --vary design.max_volume=0.3,0.4,0.5 --jobs 3");
+  add_study(*command, options.study, "runs/sweep_NAME");
+  add_jobs(*command, options.study.jobs);
+  add_repeated(*command, "--vary", options.vary, "KEY=V1,V2,...",
+               "values of a key, or cases with the key `case`; may be repeated");
+  add_number(*command, "--index", options.index, 1, 1'000'000,
+             "runs only the variant with this number, for job arrays");
+  command->add_flag("--list", options.list, "prints the variants and runs none");
+  add_value(*command, "--reference", options.reference, "FILE.csv",
+            "columns of motion.csv that are plotted as points (for cases without a design)");
+  return {command, [&] { return sweep_case(options); }};
 }
 
-CLI::App* add_accuracy(CLI::App& app, AccuracyOptions& options) {
-  CLI::App* command = app.add_subcommand(
-      "accuracy", "error against run time of a case, and its cheapest settings for 1 % and less");
-  add_case(*command, options.study.case_name, options.study.overrides);
-  command->add_option("-o,--output", options.study.directory, "folder of the study");
-  command->add_option("--budget", options.budget, "CPU time for all runs: 120s, 2min, 1h");
-  command
-      ->add_option("--ladders", options.ladders, "names, with commas (default: as the case says)")
+Command accuracy_command(CLI::App& app, AccuracyOptions& options) {
+  CLI::App* command = add_command(app, "accuracy", "finds the cheapest settings for an error",
+                                  "plate_pendulum --budget 2min");
+  add_study(*command, options.study, "runs/accuracy_NAME");
+  add_value(*command, "--budget", options.budget, "TIME",
+            "CPU time of all runs, such as 120s, 2min or 1h (default " + options.budget + ")");
+  add_value(*command, "--refinements", options.refinements, "NAME,...",
+            "names of refinement series (default: the series that the case names, or all)")
       ->delimiter(',');
-  command->add_flag("--verify,!--no-verify", options.verify, "runs what is recommended (default)");
-  command->add_option("--threads", options.study.threads, "threads of each run")
-      ->check(CLI::Range(1, 256));
-  command->add_flag("--quiet", options.study.quiet, "no progress");
-  return command;
+  command->add_flag("--verify,!--no-verify", options.verify, "verifies the settings (default)");
+  return {command, [&] { return accuracy_case(options); }};
 }
 
-CLI::App* add_stability(CLI::App& app, StabilityOptions& options) {
-  CLI::App* command = app.add_subcommand(
-      "stability", "makes cases stiff and extreme, runs them, and gives every run a verdict");
-  command->add_option("case", options.cases, "case files or names (default: all shipped cases)");
-  command->add_option("--suites", options.suites, "names, with commas (default: all but long)")
+Command stability_command(CLI::App& app, StabilityOptions& options) {
+  CLI::App* command = add_command(app, "stability", "assesses runs with extreme parameters",
+                                  "four_bar --suites stiffness,step --jobs 2");
+  add_value(*command, "case", options.cases, "CASE",
+            "case files, or names of shipped cases (default: all shipped cases)");
+  add_value(*command, "--suites", options.suites, "NAME,...", "names (default: all except long)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--set", options.overrides, "KEY=VALUE, changes every case")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--jobs", options.jobs, "processes at a time")->check(CLI::Range(1, 1024));
-  command->add_option("--timeout", options.timeout, "CPU time of each row [s]")
-      ->check(CLI::Range(0.1, 1e6));
-  command->add_option("-o,--output", options.directory, "folder (default runs/stability)");
-  command->add_flag("--quiet", options.quiet, "only the summary, and what is wrong");
-  return command;
+  add_overrides(*command, options.overrides);
+  add_jobs(*command, options.jobs);
+  add_number(*command, "--timeout", options.timeout, 0.1, 1e6, "CPU time of each run [s]");
+  add_value(*command, "-o,--output", options.directory, "FOLDER",
+            "folder of the study (default " + options.directory + ")");
+  command->add_flag("--quiet", options.quiet, "prints only the summary and WRONG runs");
+  return {command, [&] { return check_stability(options); }};
 }
 
 /// Options of the command `keys`.
 struct KeysOptions {
-  std::string table;
+  std::string table, renewed;  ///< Printed table and updated file; empty: all tables, no file.
   bool schema = false, markdown = false;
-  std::string renewed;  ///< File whose reference is replaced; empty: the reference is printed.
 };
-
-CLI::App* add_keys(CLI::App& app, KeysOptions& options) {
-  CLI::App* command = app.add_subcommand("keys", "the keys of case files");
-  command->add_option("table", options.table, "only this one: time, body.flow, top");
-  command->add_flag("--schema", options.schema, "as a JSON schema, for editors");
-  command->add_flag("--markdown", options.markdown, "as the reference of cases/README.md");
-  command->add_option("--renew", options.renewed, "writes the reference anew in this file");
-  return command;
-}
 
 /// Returns the number of columns of the terminal; 100 if the output is not a terminal.
 size_t screen_width() {
@@ -145,18 +200,29 @@ size_t screen_width() {
   return known && size.ws_col > 0 ? size.ws_col : 100;
 }
 
-void print_keys(const KeysOptions& options) {
-  if (!options.renewed.empty())
-    return flexmorph::io::write_file(options.renewed,
-                                     with_references(flexmorph::io::read_text(options.renewed)));
-  const std::string text = options.schema     ? keys_as_schema()
-                           : options.markdown ? keys_as_markdown()
-                                              : keys_for_terminal(options.table, screen_width());
-  std::fputs(text.c_str(), stdout);
+/// Returns the text that the command `keys` prints; empty if it updates a file.
+std::string keys_text(const KeysOptions& options) {
+  if (options.renewed.empty())
+    return options.schema     ? keys_as_schema()
+           : options.markdown ? keys_as_markdown()
+                              : keys_for_terminal(options.table, screen_width());
+  flexmorph::io::write_file(options.renewed,
+                            with_references(flexmorph::io::read_text(options.renewed)));
+  return "";
+}
+
+Command keys_command(CLI::App& app, KeysOptions& options) {
+  CLI::App* command = add_command(app, "keys", "prints the keys of case files", "body.flow");
+  add_value(*command, "table", options.table, "TABLE",
+            "prints only this table, such as time, body.flow or top");
+  command->add_flag("--schema", options.schema, "prints a JSON schema for editors");
+  command->add_flag("--markdown", options.markdown, "prints the reference in cases/README.md");
+  add_value(*command, "--renew", options.renewed, "FILE", "updates the reference in this file");
+  return printing(command, [&] { return keys_text(options); });
 }
 
 /// Returns the names and options of all commands, for the completion script of a shell.
-std::vector<CommandWords> command_words(const CLI::App& app) {
+std::vector<CommandWords> command_texts(const CLI::App& app) {
   std::vector<CommandWords> out;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     CommandWords& words = out.emplace_back();
@@ -184,10 +250,10 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
   const std::vector<std::string> shipped = shipped_cases();
   if (std::filesystem::is_regular_file(word) ||
       std::find(shipped.begin(), shipped.end(), word) != shipped.end())
-    throw Error::input("'" + word + "' is a case: flexmorph run " + word);
+    throw Error::input("'" + word + "' is a case, not a command; use: flexmorph run " + word);
   const std::string close = flexmorph::io::nearest(word, names);
-  throw Error::input("'" + word + "' is no command" +
-                     (close.empty() ? "; there are " + flexmorph::joined(names)
+  throw Error::input("'" + word + "' is not a command" +
+                     (close.empty() ? "; the commands are: " + flexmorph::joined(names)
                                     : ", did you mean '" + close + "'?"));
 }
 
@@ -198,152 +264,100 @@ void finish_output() {
     throw Error::input("the output cannot be written: " + std::generic_category().message(errno));
 }
 
-/// A command of the program: its options, and the function that executes it.
-struct Command {
-  CLI::App* app;
-  std::function<int()> run;
-  bool computes = true;  ///< True if the command needs the buffers of OpenBLAS.
-};
-
 Command run_command(CLI::App& app, RunOptions& options) {
-  CLI::App* run = app.add_subcommand("run", "runs a case and writes its run folder");
+  CLI::App* run = add_command(app, "run", "runs a case and writes its run folder",
+                              "short_beam --set design.max_volume=0.4 -o runs/light");
   add_case(*run, options.case_name, options.overrides);
-  run->add_option("-o,--output", options.directory, "run folder (default runs/<name>)");
-  run->add_option("--threads", options.threads,
-                  "threads for loads, cells, and motions side by side")
-      ->check(CLI::Range(1, 256));
-  run->add_flag("--condition", options.condition,
-                "estimates the condition of the last matrices, for run.json");
-  run->add_flag("--explain", options.explain, "keeps the case with all its defaults");
-  run->add_flag("--quiet", options.quiet, "no progress");
-  run->add_flag("--resume", options.resume,
-                "goes on with a run of this case that did not come to its end");
+  add_value(*run, "-o,--output", options.directory, "FOLDER", "run folder (default runs/NAME)");
+  add_threads(*run, options.threads);
+  run->add_flag("--condition", options.condition, "estimates condition numbers for run.json");
+  run->add_flag("--explain", options.explain, "writes the case with all default values");
+  run->add_flag("--quiet", options.quiet, "prints no progress");
+  run->add_flag("--resume", options.resume, "continues a run of this case that is not finished");
   return {run, [&] { return run_case(options); }};
 }
 
 Command check_command(CLI::App& app, RunOptions& options) {
-  CLI::App* check =
-      app.add_subcommand("check", "validates a case; says what it contains and costs");
+  CLI::App* check = add_command(app, "check", "validates a case; prints its content and cost",
+                                "four_bar --set time.step=1e-3");
   add_case(*check, options.case_name, options.overrides);
-  check->add_flag("--explain", options.explain, "prints the case with all its defaults instead");
-  return {check, [&] {
-            std::fputs(check_case(options.case_name, options.overrides, options.explain).c_str(),
-                       stdout);
-            return 0;
-          }};
+  check->add_flag("--explain", options.explain, "prints only the case with all default values");
+  return printing(
+      check, [&] { return check_case(options.case_name, options.overrides, options.explain); },
+      true);
 }
 
 Command certify_command(CLI::App& app, CertifyOptions& options) {
-  CLI::App* certify =
-      app.add_subcommand("certify", "what the motion itself says of the designs of a finished run");
-  certify->add_option("run", options.directory, "folder of the run")->required();
-  certify->add_option("--set", options.overrides, "KEY=VALUE, changes the case")
-      ->take_all()
-      ->allow_extra_args(false);
-  certify->add_flag("--quiet", options.quiet, "only the certificate");
+  CLI::App* certify = add_command(app, "certify", "computes how far designs are from an optimum",
+                                  "runs/slider_crank_designed");
+  add_value(*certify, "run", options.directory, "FOLDER", "folder of the run")->required();
+  add_overrides(*certify, options.overrides);
+  certify->add_flag("--quiet", options.quiet, "prints only the certificate");
   return {certify, [&] { return certify_run(options); }};
 }
 
 Command verify_command(CLI::App& app, VerifyOptions& options) {
-  CLI::App* verify = app.add_subcommand(
-      "verify", "puts redrawn parts in place of designs: their numbers beside the design's");
-  verify
-      ->add_option("run_or_case", options.case_name,
-                   "folder of a finished run, whose design is beside the part; or a case")
+  CLI::App* verify = add_command(app, "verify", "compares redrawn parts with the designs",
+                                 "runs/rotating_plate_v01 --part plate=part.dxf");
+  add_value(*verify, "run_or_case", options.case_name, "FOLDER|CASE",
+            "folder of a finished run, or a case")
       ->required();
-  verify
-      ->add_option("--part", options.parts,
-                   "BODY=FILE (.dxf, .step): outline in the coordinates of the exported design")
-      ->required()
-      ->take_all()
-      ->allow_extra_args(false);
-  verify->add_option("--set", options.overrides, "KEY=VALUE, changes the case")
-      ->take_all()
-      ->allow_extra_args(false);
-  verify->add_option("-o,--output", options.directory,
-                     "run folder (default: that of the run, or runs/<name>, with _verify)");
-  verify
-      ->add_option("--threads", options.threads,
-                   "threads for loads, cells, and motions side by side")
-      ->check(CLI::Range(1, 256));
-  verify->add_flag("--quiet", options.quiet, "no progress");
+  add_repeated(*verify, "--part", options.parts, "BODY=FILE",
+               "outline (.dxf, .step) in the coordinates of the exported design")
+      ->required();
+  add_overrides(*verify, options.overrides);
+  add_value(*verify, "-o,--output", options.directory, "FOLDER",
+            "run folder (default: folder of the run, or runs/NAME, with the ending _verify)");
+  add_threads(*verify, options.threads);
+  verify->add_flag("--quiet", options.quiet, "prints no progress");
   return {verify, [&] { return verify_parts(options); }};
 }
 
 Command cases_command(CLI::App& app) {
-  return {app.add_subcommand("cases", "lists the shipped cases"),
-          [] {
-            for (const std::string& name : shipped_cases()) std::printf("%s\n", name.c_str());
-            return 0;
-          },
-          false};
+  return printing(add_command(app, "cases", "lists the shipped cases", ""), [] {
+    std::string out;
+    for (const std::string& name : shipped_cases()) out += name + "\n";
+    return out;
+  });
 }
 
 Command completion_command(CLI::App& app, std::string& shell) {
-  CLI::App* completion = app.add_subcommand("completion", "a script that completes commands");
-  completion->add_option("shell", shell, "bash or zsh")
+  CLI::App* completion = add_command(app, "completion", "prints a script for a shell", "bash");
+  add_value(*completion, "shell", shell, "SHELL", "bash or zsh")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh"}));
-  return {completion,
-          [&] {
-            std::fputs(completion_script(shell, command_words(app)).c_str(), stdout);
-            return 0;
-          },
-          false};
-}
-
-/// The options of all commands.
-struct AllOptions {
-  RunOptions run;
-  CompareOptions compare;
-  std::vector<std::string> compared_cycles;
-  SweepOptions sweep;
-  AccuracyOptions accuracy;
-  StabilityOptions stability;
-  CertifyOptions certify;
-  VerifyOptions verify;
-  KeysOptions keys;
-  std::string shell;
-};
-
-/// Returns the commands in the order of the help text.
-std::vector<Command> commands_of(CLI::App& app, AllOptions& all) {
-  std::vector<Command> out = {run_command(app, all.run), check_command(app, all.run)};
-  out.push_back({add_compare(app, all.compare, all.compared_cycles), [&] {
-                   if (all.compared_cycles.empty()) return compare_case(all.compare);
-                   return compare_cycles({all.compare.study, all.compared_cycles});
-                 }});
-  out.push_back({add_sweep(app, all.sweep), [&] { return sweep_case(all.sweep); }});
-  out.push_back({add_accuracy(app, all.accuracy), [&] { return accuracy_case(all.accuracy); }});
-  out.push_back(
-      {add_stability(app, all.stability), [&] { return check_stability(all.stability); }});
-  out.push_back(certify_command(app, all.certify));
-  out.push_back(verify_command(app, all.verify));
-  out.push_back(cases_command(app));
-  out.push_back({add_keys(app, all.keys),
-                 [&] {
-                   print_keys(all.keys);
-                   return 0;
-                 },
-                 false});
-  out.push_back(completion_command(app, all.shell));
-  return out;
+      ->check(CLI::IsMember({"bash", "zsh"}).description(""));
+  return printing(completion, [&] { return completion_script(shell, command_texts(app)); });
 }
 
 int parse_and_run(int argc, char** argv) {
   CLI::App app("Topology optimization of flexible mechanisms", "flexmorph");
   app.set_version_flag("--version", std::string("flexmorph ") + kVersion);
+  app.footer(std::string("Options of a command: flexmorph COMMAND --help\n\n") + kExitCodes);
   app.require_subcommand(1);
-  AllOptions options;
-  std::vector<Command> commands = commands_of(app, options);
-  CLI::App* help = app.add_subcommand("help", "this list");
+  RunOptions run;
+  VerifyOptions verify;
+  CompareOptions compare;
+  SweepOptions sweep;
+  AccuracyOptions accuracy;
+  StabilityOptions stability;
+  CertifyOptions certify;
+  KeysOptions keys;
+  std::vector<std::string> cycles;
+  std::string shell;
+  std::vector<Command> commands = {run_command(app, run),
+                                   check_command(app, run),
+                                   compare_command(app, compare, cycles),
+                                   sweep_command(app, sweep),
+                                   accuracy_command(app, accuracy),
+                                   stability_command(app, stability),
+                                   certify_command(app, certify),
+                                   verify_command(app, verify),
+                                   cases_command(app),
+                                   keys_command(app, keys),
+                                   completion_command(app, shell)};
+  CLI::App* help = app.add_subcommand("help", "prints this list");
   const std::string all_help = app.help();  // after parsing it would be the help of one command
-  commands.push_back({help,
-                      [&] {
-                        std::fputs(all_help.c_str(), stdout);
-                        return 0;
-                      },
-                      false});
+  commands.push_back(printing(help, [&] { return all_help; }));
   if (argc > 1)
     refuse_unknown_command(app, argv[1]);
   else
@@ -353,8 +367,8 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  const int threads = std::max(options.run.threads, options.verify.threads);
-  flexmorph::settle_processor(threads, argv);
+  const int threads = std::max(run.threads, verify.threads);
+  flexmorph::set_up_processor(threads, argv);
   for (const Command& command : commands) {
     if (!*command.app) continue;
     if (command.computes) flexmorph::reserve_blas(threads);
@@ -365,9 +379,7 @@ int parse_and_run(int argc, char** argv) {
 
 }  // namespace
 
-/// Runs the program. Exit codes: 0 done, 1 defect of the program, 2 invalid input, 3 numerical
-/// failure, 4 interrupted, 5 done, but an expectation of the case is violated or the result is not
-/// usable.
+/// Runs the program and returns its exit code, see kExitCodes.
 int main(int argc, char** argv) {
   const flexmorph::PlainNumbers plain;  // also for numbers in messages
   try {
@@ -378,10 +390,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "flexmorph: %s\n", error.what());
     return error.kind() == Error::Kind::input ? 2 : 3;
   } catch (const std::bad_alloc&) {
-    std::fputs("flexmorph: memory ran out\n", stderr);
+    std::fputs("flexmorph: there is not enough memory\n", stderr);
     return 3;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "flexmorph: unexpected: %s\n", error.what());
+    std::fprintf(stderr, "flexmorph: unexpected error: %s\n", error.what());
     return 1;
   }
 }

@@ -25,27 +25,27 @@ std::unique_ptr<Joint> make_unit_axis(std::string name, std::string body);
 
 /// Creates a revolute joint, in which the two points coincide: Φ = p_b - p_a, 2 rows. The
 /// multiplier is the negative of the force [N] that a exerts on b.
-std::unique_ptr<Joint> make_revolute(std::string name, MarkerPlace a, MarkerPlace b);
+std::unique_ptr<Joint> make_revolute(std::string name, MarkerLocation a, MarkerLocation b);
 
 /// Creates a rigid connection, in which points and axes coincide: Φ = (p_b - p_a, n_a · e_b), 3
 /// rows.
-std::unique_ptr<Joint> make_rigid_weld(std::string name, MarkerPlace a, MarkerPlace b);
+std::unique_ptr<Joint> make_rigid_weld(std::string name, MarkerLocation a, MarkerLocation b);
 
 /// Creates a prismatic joint: the point of b slides freely along axis 1 of a, and the axes are
 /// parallel: Φ = (n_a · (p_b - p_a), n_a · e_b), 2 rows.
-std::unique_ptr<Joint> make_slider(std::string name, MarkerPlace a, MarkerPlace b);
+std::unique_ptr<Joint> make_slider(std::string name, MarkerLocation a, MarkerLocation b);
 
 /// Creates a rotational drive: the angle from axis 1 of a to axis 1 of b is motion(t) [rad],
 /// counter-clockwise. With α that angle, Φ = n_b · R(α) e_a = -sin(θ_b - θ_a - α), 1 row. The
 /// multiplier is the moment [N m] that the drive exerts on b.
-std::unique_ptr<Joint> make_angle_drive(std::string name, MarkerPlace a, MarkerPlace b,
+std::unique_ptr<Joint> make_angle_drive(std::string name, MarkerLocation a, MarkerLocation b,
                                         std::function<Motion(double t)> motion);
 
 /// Creates a joint that keeps the two points at the distance L(t) = motion(t) [m]: Φ = (|p_b -
 /// p_a|² - L(t)²) / (2 L(0)), 1 row. Where L is constant the joint is a massless rod, and the
 /// multiplier is the tension in it [N].
 /// @throws Error (input) unless L(0) > 0; at evaluation unless L(t) > 0.
-std::unique_ptr<Joint> make_distance(std::string name, MarkerPlace a, MarkerPlace b,
+std::unique_ptr<Joint> make_distance(std::string name, MarkerLocation a, MarkerLocation b,
                                      std::function<Motion(double t)> motion);
 
 /// Data of two gear wheels that roll on each other without slip.
@@ -65,18 +65,19 @@ struct GearData {
 /// The multiplier is the negative of the moment [N m] on b. Further solutions at distances of 2 π/q
 /// correspond to other pairs of teeth in mesh; a motion cannot reach them.
 /// @throws Error (input) for a number of teeth that is not positive.
-std::unique_ptr<Joint> make_gear(std::string name, MarkerPlace a, MarkerPlace b,
+std::unique_ptr<Joint> make_gear(std::string name, MarkerLocation a, MarkerLocation b,
                                  const GearData& wheels);
 
 /// Creates a joint in which the point of b moves along a curve given in the axes of a: Φ is the
 /// signed distance of the point from the curve, 1 row [m]. The multiplier is the negative of the
 /// force [N] on b normal to the curve; there is no friction.
 /// @throws Error (numerical) at evaluation where the point leaves an open curve at one of its ends.
-std::unique_ptr<Joint> make_path(std::string name, MarkerPlace a, MarkerPlace b, PlaneCurve curve);
+std::unique_ptr<Joint> make_path(std::string name, MarkerLocation a, MarkerLocation b,
+                                 PlaneCurve curve);
 
 /// Creates a joint in which the given components (0, 1; both if empty) of the point of a follow a
 /// path in the world frame, with one row per component.
-std::unique_ptr<Joint> make_point_drive(std::string name, MarkerPlace a, PointDrive point,
+std::unique_ptr<Joint> make_point_drive(std::string name, MarkerLocation a, PointDrive point,
                                         std::vector<int> components);
 
 /// Creates a joint that welds a plate edge to a frame on a rigid body or on the ground, as
@@ -91,6 +92,6 @@ std::unique_ptr<Joint> make_point_drive(std::string name, MarkerPlace a, PointDr
 /// make_weld(). The z entries of a plate in space are zero.
 /// @throws Error (input) at bind() also for an edge that is no m-line ("side_low", "side_high").
 std::unique_ptr<Joint> make_edge_weld(std::string name, std::string plate, std::string edge,
-                                      MarkerPlace frame, WeldMode mode);
+                                      MarkerLocation frame, WeldMode mode);
 
 }  // namespace flexmorph::fem

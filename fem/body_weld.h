@@ -8,7 +8,7 @@
 namespace flexmorph::fem {
 
 /// An edge across a plate, or an end of a beam, named by its body.
-struct EdgePlace {
+struct EdgeLocation {
   /// Name of the body, and name of the edge: "root" or "free_end".
   std::string body, edge;
 };
@@ -38,7 +38,7 @@ struct EdgePlace {
 /// and b; at bind() for a body or an edge that does not exist, for an edge that runs along the
 /// plate or moves through the material, for bodies in space, for other modes than those listed, and
 /// for plates whose nodes do not coincide or have different kinds of unknowns.
-std::unique_ptr<Joint> make_body_weld(std::string name, EdgePlace a, EdgePlace b, double angle,
-                                      WeldMode mode);
+std::unique_ptr<Joint> make_body_weld(std::string name, EdgeLocation a, EdgeLocation b,
+                                      double angle, WeldMode mode);
 
 }  // namespace flexmorph::fem

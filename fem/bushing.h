@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/link.h"
+#include "fem/force_element.h"
 
 namespace flexmorph::fem {
 
@@ -28,7 +28,7 @@ struct BushingData {
 /// axis.
 /// @throws Error (input) for a number that is negative or not finite, and where all are zero; at
 /// bind() see Marker::bind().
-std::unique_ptr<Link> make_bushing(std::string name, MarkerPlace a, MarkerPlace b,
-                                   const BushingData& bushing);
+std::unique_ptr<ForceElement> make_bushing(std::string name, MarkerLocation a, MarkerLocation b,
+                                           const BushingData& bushing);
 
 }  // namespace flexmorph::fem

@@ -6,7 +6,7 @@ const ShapeElement& Element::with_shapes() const {
   if (const ShapeElement* out = shape_element()) return *out;
   throw Error::input(
       "a body without shape functions has no material coordinates: points of a rigid body are "
-      "places of markers");
+      "given by locations of markers");
 }
 
 std::vector<NodeVectors> Element::edge(const std::string& name) const {
@@ -16,9 +16,9 @@ std::vector<NodeVectors> Element::edge(const std::string& name) const {
   return shape_element()->edge(name);
 }
 
-void Element::tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const {
-  if (!free_lines()) throw Error::input("an element that knows no free material lines");
-  free_lines()->tabulate_free(e, degree, what, out);
+void Element::tabulate_eulerian(int e, int degree, Tabulate what, EulerianTable& out) const {
+  if (!eulerian_lines()) throw Error::input("this element does not support free material lines");
+  eulerian_lines()->tabulate_eulerian(e, degree, what, out);
 }
 
 }  // namespace flexmorph::fem

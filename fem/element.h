@@ -12,8 +12,8 @@
 
 namespace flexmorph::fem {
 
-struct FreeTable;  // fem/free_lines.h
-class RigidClock;  // fem/rigid.h
+struct EulerianTable;  // fem/eulerian_lines.h
+class RigidClock;      // fem/rigid.h
 
 inline constexpr int kMaxShapes = 16;  ///< Largest number of shape functions of one element.
 inline constexpr int kMaxDim = 3;      ///< Largest number of directions in space.
@@ -25,7 +25,7 @@ using LocalRows =
 /// Scale factors of stiffness and mass of a design, one per cell of a grid over the material
 /// coordinates. The quadrature splits an element at the cell borders and is exact for these
 /// piecewise constant factors. Empty vectors mean uniform full material.
-struct Factors {
+struct ScaleFactors {
   Grid grid;                 ///< Grid of the cells over the material coordinates [m].
   VectorXd stiffness, mass;  ///< Scale factors of stiffness and of mass (n_cells), or empty.
 
@@ -34,7 +34,7 @@ struct Factors {
 };
 
 /// Gradient of a number with respect to the scale factors of the cells of a body.
-struct FactorSlopes {
+struct ScaleFactorGradient {
   /// Derivatives by the stiffness factors and by the mass factors (n_cells each).
   VectorXd stiffness, mass;
 
@@ -84,7 +84,7 @@ enum class Tabulate {
 };
 
 /// Selects the scale factor that multiplies the quadrature weight.
-enum class FactorKind { none, stiffness, mass };
+enum class ScaleFactorKind { none, stiffness, mass };
 
 /// Numbers of the vector unknowns of one node (-1: the element has no unknown of that kind).
 struct NodeVectors {
@@ -111,8 +111,8 @@ class ShapeElement {
   /// Fills the tables at quadrature points that integrate polynomials of the given degree per
   /// direction exactly over element e, also with a scale factor that is constant in every design
   /// cell.
-  virtual void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
-                        ShapeTable& out) const = 0;
+  virtual void tabulate(int e, int degree, Tabulate what, const ScaleFactors& factors,
+                        ScaleFactorKind kind, ShapeTable& out) const = 0;
   /// Fills the shape functions at one material point (weight 1).
   /// @returns the element that contains the point
   /// @throws Error (input) when the point is outside the body.
@@ -142,9 +142,9 @@ class MovingElement {
 /// Interface of elements between free lines, that is mesh lines whose material coordinate [m] is an
 /// unknown (Eulerian coordinate). These coordinates are the scalar unknowns of the body, which
 /// follow its vector unknowns.
-class FreeLineElement {
+class EulerianLineElement {
  public:
-  virtual ~FreeLineElement() = default;
+  virtual ~EulerianLineElement() = default;
   /// Returns the current material coordinates of the free lines (n_scalars) [m].
   virtual VectorXd scalars() const = 0;
   /// Sets the material coordinates of the free lines with their rates and accelerations (n_scalars
@@ -156,7 +156,7 @@ class FreeLineElement {
   virtual std::span<const int> free_sides(int e) const = 0;
   /// Fills the tables of an element with free lines and uniform material, see
   /// ShapeElement::tabulate().
-  virtual void tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const = 0;
+  virtual void tabulate_eulerian(int e, int degree, Tabulate what, EulerianTable& out) const = 0;
 };
 
 /// Interface of elements that are split at the borders of design cells.
@@ -181,8 +181,8 @@ class ProductElement {
   virtual ~ProductElement() = default;
   /// Fills the one-dimensional functions at the points of ShapeElement::tabulate().
   /// @returns false, with nothing filled, where the shape functions are no products
-  virtual bool tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
-                                 ProductTable& out) const = 0;
+  virtual bool tabulate_products(int e, int degree, const ScaleFactors& factors,
+                                 ScaleFactorKind kind, ProductTable& out) const = 0;
 };
 
 /// Numbers of elements and unknowns of a body.
@@ -191,7 +191,7 @@ struct ElementSizes {
   int n_shapes = 0;    ///< Number of shape functions of one element, <= kMaxShapes.
   int n_elements = 0;  ///< Number of elements of the body.
   int n_vectors = 0;   ///< Number of vector unknowns of the body.
-  int n_scalars = 0;   ///< Number of scalar unknowns of the body, see FreeLineElement.
+  int n_scalars = 0;   ///< Number of scalar unknowns of the body, see EulerianLineElement.
 };
 
 /// The elements of one body.
@@ -227,7 +227,7 @@ class Element {
   int n_elements() const { return sizes_.n_elements; }
   /// Returns the number of vector unknowns of the body.
   int n_vectors() const { return sizes_.n_vectors; }
-  /// Returns the number of scalar unknowns of the body, see FreeLineElement.
+  /// Returns the number of scalar unknowns of the body, see EulerianLineElement.
   int n_scalars() const { return sizes_.n_scalars; }
   /// Returns true if the element has shape functions over material coordinates.
   bool has_shapes() const { return shape_element() != nullptr; }
@@ -238,7 +238,7 @@ class Element {
 
   /// Fills the tables of element e, see ShapeElement::tabulate().
   /// @throws Error (input) for an element without shape functions.
-  void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
+  void tabulate(int e, int degree, Tabulate what, const ScaleFactors& factors, ScaleFactorKind kind,
                 ShapeTable& out) const {
     with_shapes().tabulate(e, degree, what, factors, kind, out);
   }
@@ -271,19 +271,19 @@ class Element {
   }
 
   /// Returns the material coordinates of the free lines (n_scalars) [m].
-  VectorXd scalars() const { return n_scalars() > 0 ? free_lines()->scalars() : VectorXd(); }
-  /// Sets the free lines, see FreeLineElement::move_lines(); has no effect without free lines.
+  VectorXd scalars() const { return n_scalars() > 0 ? eulerian_lines()->scalars() : VectorXd(); }
+  /// Sets the free lines, see EulerianLineElement::move_lines(); has no effect without free lines.
   void move_lines(const VectorXd& p, const VectorXd& rate, const VectorXd& acceleration) {
-    if (n_scalars() > 0) abilities_->free_lines(*this)->move_lines(p, rate, acceleration);
+    if (n_scalars() > 0) abilities_->eulerian_lines(*this)->move_lines(p, rate, acceleration);
   }
-  /// Returns the scalar unknowns around element e, see FreeLineElement::free_sides(); empty without
-  /// free lines.
+  /// Returns the scalar unknowns around element e, see EulerianLineElement::free_sides(); empty
+  /// without free lines.
   std::span<const int> free_sides(int e) const {
-    return n_scalars() > 0 ? free_lines()->free_sides(e) : std::span<const int>{};
+    return n_scalars() > 0 ? eulerian_lines()->free_sides(e) : std::span<const int>{};
   }
-  /// Fills the tables of an element with free lines, see FreeLineElement::tabulate_free().
+  /// Fills the tables of an element with free lines, see EulerianLineElement::tabulate_eulerian().
   /// @throws Error (input) for an element without support of free lines.
-  void tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const;
+  void tabulate_eulerian(int e, int degree, Tabulate what, EulerianTable& out) const;
 
   /// Adds integrals over cells, see CellElement::add_cell_integrals(); has no effect on elements
   /// that are no CellElement.
@@ -300,7 +300,7 @@ class Element {
   }
   /// Fills the one-dimensional functions, see ProductElement::tabulate_products().
   /// @returns false for elements that are no ProductElement
-  bool tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
+  bool tabulate_products(int e, int degree, const ScaleFactors& factors, ScaleFactorKind kind,
                          ProductTable& out) const {
     const ProductElement* product = abilities_->products(*this);
     return product != nullptr && product->tabulate_products(e, degree, factors, kind, out);
@@ -326,7 +326,7 @@ class Element {
   struct Abilities {
     const ShapeElement* (*shapes)(const Element&);
     MovingElement* (*moving)(Element&);
-    FreeLineElement* (*free_lines)(Element&);
+    EulerianLineElement* (*eulerian_lines)(Element&);
     const CellElement* (*cells)(const Element&);
     const ProductElement* (*products)(const Element&);
     bool rigid;
@@ -344,15 +344,15 @@ class Element {
   }
   template <class E>
   static constexpr Abilities kAbilities = {
-      as<E, ShapeElement>, as_changing<E, MovingElement>, as_changing<E, FreeLineElement>,
+      as<E, ShapeElement>, as_changing<E, MovingElement>, as_changing<E, EulerianLineElement>,
       as<E, CellElement>,  as<E, ProductElement>,         std::is_base_of_v<RigidClock, E>};
 
   const ShapeElement* shape_element() const { return abilities_->shapes(*this); }
   /// Returns the element as a ShapeElement.
   /// @throws Error (input) if it is none.
   const ShapeElement& with_shapes() const;
-  const FreeLineElement* free_lines() const {
-    return abilities_->free_lines(const_cast<Element&>(*this));
+  const EulerianLineElement* eulerian_lines() const {
+    return abilities_->eulerian_lines(const_cast<Element&>(*this));
   }
 
   const Abilities* abilities_;

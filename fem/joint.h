@@ -33,10 +33,10 @@ struct ConstraintRows {
 
 /// The data of a body that joints and force elements use.
 struct BodyView {
-  const std::string* name;           ///< Name of the body.
-  const Element* element;            ///< Elements of the body.
-  int first_dof;                     ///< Number of the first unknown of the body in the model.
-  const Factors* factors = nullptr;  ///< Scale factors of the design of the body.
+  const std::string* name;                ///< Name of the body.
+  const Element* element;                 ///< Elements of the body.
+  int first_dof;                          ///< Number of the first unknown of the body in the model.
+  const ScaleFactors* factors = nullptr;  ///< Scale factors of the design of the body.
 };
 
 /// Interface of a joint: constraint rows Φ(q, t) = 0.
@@ -67,7 +67,8 @@ class Joint {
   /// unknowns of the model and stay the same at every call between two calls of bind(). There are
   /// no entries where Φ is linear in q.
   /// @param lambda  multipliers of the rows of this joint (size())
-  virtual void add_stiffness(double /*t*/, const VectorXd& /*q*/, const VectorXd& /*lambda*/,
+  virtual void add_stiffness(double /*t*/, const VectorXd& /*q*/,
+                             [[maybe_unused]] const VectorXd& lambda,
                              std::vector<Eigen::Triplet<double>>& /*out*/) const {}
 };
 
@@ -139,18 +140,18 @@ enum class NodeVector { r, r_m, r_n, r_mn };
 
 /// Nodes that a hold acts on: the nodes of a named edge or, without a name, all nodes within a box
 /// of material coordinates (low = high: exactly one node, which must exist).
-struct HoldPlace {
+struct HoldLocation {
   std::string edge{};          ///< Name of the edge, or empty.
   Vec2 low{0, 0}, high{0, 0};  ///< Corners of the box of material coordinates [m].
 
   /// Returns the location of the node at the given material coordinates [m].
-  static HoldPlace at(const Vec2& material) { return {{}, material, material}; }
+  static HoldLocation at(const Vec2& material) { return {{}, material, material}; }
 };
 
 /// Components of one kind of vector unknown that are held at given values, or at their values in
 /// the undeformed body.
 struct Held {
-  HoldPlace at;                       ///< Nodes whose unknowns are held.
+  HoldLocation at;                    ///< Nodes whose unknowns are held.
   NodeVector vector = NodeVector::r;  ///< Kind of vector unknown.
   std::vector<int> components{};      ///< Held components (0, 1, 2).
   VectorXd value{};  ///< Prescribed values (dim), or empty for the reference values.

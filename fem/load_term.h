@@ -31,7 +31,7 @@ class LoadTerm : public Term, public ScaledLoad {
   /// @param follows  true if the load turns with the body
   /// @throws Error (input) for a number that is not finite.
   explicit LoadTerm(LoadLaw law, bool follows = false) : law_(std::move(law)), follows_(follows) {
-    if (!law_.now().allFinite()) throw Error::input("load: a number that is not finite");
+    if (!law_.now().allFinite()) throw Error::input("load: a number is not finite");
   }
 
   /// Adds the contribution of the load alone, without inertia, to the force of add_force().

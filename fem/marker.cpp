@@ -8,14 +8,14 @@ namespace flexmorph::fem {
 void Marker::bind(std::span<const BodyView> bodies, const std::string& user, bool with_axis) {
   dofs_.clear();
   depends_.clear();
-  if (!place_.point.allFinite() || !std::isfinite(place_.angle))
-    throw Error::input(user + ": a place with a number that is not finite");
+  if (!location_.point.allFinite() || !std::isfinite(location_.angle))
+    throw Error::input(user + ": a number of its location is not finite");
   rigid_ = false;
-  if (!place_.body.empty()) {
+  if (!location_.body.empty()) {
     const auto found = std::find_if(bodies.begin(), bodies.end(),
-                                    [&](const BodyView& b) { return *b.name == place_.body; });
+                                    [&](const BodyView& b) { return *b.name == location_.body; });
     if (found == bodies.end())
-      throw Error::input(user + ": there is no body '" + place_.body + "'");
+      throw Error::input(user + ": there is no body '" + location_.body + "'");
     const BodyView& body = *found;
     rigid_ = body.element->is_rigid();
     if (rigid_)
@@ -29,32 +29,32 @@ void Marker::bind(std::span<const BodyView> bodies, const std::string& user, boo
   offset_.setZero();
   offset_rate_.setZero();
   offset_acceleration_.setZero();
-  const double c = std::cos(place_.angle), s = std::sin(place_.angle);
+  const double c = std::cos(location_.angle), s = std::sin(location_.angle);
   if (rigid_) {
     block_.bottomRightCorner<2, 2>() << c, -s, s, c;
   } else {
     offset_.tail<2>() << c, s;
   }
-  place_at(place_.point, 1, block_, offset_);
+  location_at(location_.point, 1, block_, offset_);
 }
 
 void Marker::bind_rigid(int first_dof) {
   dofs_ = {first_dof, first_dof + 1, first_dof + 2, first_dof + 3};
-  const unsigned by_u = shifts() || !place_.point.isZero(0) ? 3U : 0U;
+  const unsigned by_u = shifts() || !location_.point.isZero(0) ? 3U : 0U;
   depends_ = {1U, 2U, by_u | 12U, by_u | 12U};
 }
 
 void Marker::bind_plate(const BodyView& body, const std::string& user, bool with_axis) {
   const Element& element = *body.element;
   const auto refuse = [&](const std::string& why) {
-    throw Error::input(user + ", body '" + place_.body + "': " + why);
+    throw Error::input(user + ", body '" + location_.body + "': " + why);
   };
-  if (element.dim() != 2) refuse("places are those of bodies in the plane");
-  if (with_axis || place_.angle != 0) refuse("a point of a plate has no axes");
-  if (place_.along) refuse("a point of a plate stays at its material coordinates");
+  if (element.dim() != 2) refuse("the location must be on a body in the plane");
+  if (with_axis || location_.angle != 0) refuse("a location on a plate has no axes and no angle");
+  if (location_.along) refuse("a location on a plate cannot move along an axis");
   ShapeTable table;
-  const int e = element.locate(place_.point, Tabulate::position, table);
-  if (element.moving(e)) refuse("a place in an element whose material lines move");
+  const int e = element.locate(location_.point, Tabulate::position, table);
+  if (element.moving(e)) refuse("the location cannot be in an element whose material lines move");
   const auto vectors = element.vectors(e);
   std::vector<std::pair<int, double>> weights;
   for (int k = 0; k < element.n_shapes(); ++k) {
@@ -78,8 +78,8 @@ void Marker::bind_plate(const BodyView& body, const std::string& user, bool with
 
 /// Sets the coefficients of a point (X, Y) of the body (position = 1) or of a vector in it
 /// (position = 0).
-void Marker::place_at(const Vec2& point, double position, Block& block,
-                      Eigen::Vector4d& offset) const {
+void Marker::location_at(const Vec2& point, double position, Block& block,
+                         Eigen::Vector4d& offset) const {
   if (!rigid_) {
     offset.head<2>() = point;
     return;
@@ -90,11 +90,11 @@ void Marker::place_at(const Vec2& point, double position, Block& block,
 
 MarkerMotion Marker::evaluate(double t, const VectorXd& q, const VectorXd& v) const {
   if (shifts()) {
-    const Motion s = place_.along(t);
-    const Vec2 axis(std::cos(place_.angle), std::sin(place_.angle));
-    place_at(place_.point + s.value * axis, 1, block_, offset_);
-    place_at(s.rate * axis, 0, block_rate_, offset_rate_);
-    place_at(s.acceleration * axis, 0, block_acceleration_, offset_acceleration_);
+    const Motion s = location_.along(t);
+    const Vec2 axis(std::cos(location_.angle), std::sin(location_.angle));
+    location_at(location_.point + s.value * axis, 1, block_, offset_);
+    location_at(s.rate * axis, 0, block_rate_, offset_rate_);
+    location_at(s.acceleration * axis, 0, block_acceleration_, offset_acceleration_);
   }
   MarkerMotion out{offset_, offset_rate_, offset_rate_, offset_acceleration_};
   for (size_t k = 0; k < dofs_.size(); ++k) {
@@ -116,9 +116,10 @@ void MarkerPair::bind(std::span<const BodyView> bodies, const std::string& user,
   b_.bind(bodies, user, axis_b);
   dofs_.assign(a_.dofs().begin(), a_.dofs().end());
   dofs_.insert(dofs_.end(), b_.dofs().begin(), b_.dofs().end());
-  if (dofs_.empty()) throw Error::input(user + ": both places are on the ground");
-  if (a_.is_rigid() && b_.is_rigid() && a_.place().body == b_.place().body)
-    throw Error::input(user + ": both places are on the same rigid body '" + a_.place().body + "'");
+  if (dofs_.empty()) throw Error::input(user + ": both locations are on the ground");
+  if (a_.is_rigid() && b_.is_rigid() && a_.location().body == b_.location().body)
+    throw Error::input(user + ": both locations are on the same rigid body '" + a_.location().body +
+                       "'");
 }
 
 bool MarkerPair::depends(int i, size_t k) const {

@@ -11,7 +11,7 @@ namespace flexmorph::fem {
 
 /// A location on a body, or on the ground, with axes; it is given by names and looked up in a model
 /// by a Marker.
-struct MarkerPlace {
+struct MarkerLocation {
   std::string body{};  ///< Name of the body; empty for the ground.
 
   /// Coordinates in the axes of a rigid body or of the ground, or material coordinates (m, n) of a
@@ -47,7 +47,7 @@ class Marker {
   using Block = Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 2 * kMaxShapes>;
 
   /// Creates a marker for a location; call bind() before it is evaluated.
-  explicit Marker(MarkerPlace place) : place_(std::move(place)) {}
+  explicit Marker(MarkerLocation location) : location_(std::move(location)) {}
 
   /// Looks up the body; it is called again after every change of a mesh.
   /// @param user       first words of messages: "joint 'hinge'", "link 'damper'"
@@ -58,13 +58,13 @@ class Marker {
   void bind(std::span<const BodyView> bodies, const std::string& user, bool with_axis);
 
   /// Returns the location as it was given.
-  const MarkerPlace& place() const { return place_; }
+  const MarkerLocation& location() const { return location_; }
   /// Returns the unknowns of the model that the marker depends on, each once.
   std::span<const int> dofs() const { return dofs_; }
   /// Returns true if the marker is on a rigid body (and not on the ground).
   bool is_rigid() const { return rigid_; }
   /// Returns true if the point moves in its body.
-  bool shifts() const { return static_cast<bool>(place_.along); }
+  bool shifts() const { return static_cast<bool>(location_.along); }
   /// Returns true if entry i (0, 1: of p; 2, 3: of e) can depend on the unknown dofs()[k].
   bool depends(int i, size_t k) const { return (depends_[k] >> i & 1U) != 0; }
 
@@ -78,9 +78,9 @@ class Marker {
  private:
   void bind_rigid(int first_dof);
   void bind_plate(const BodyView& body, const std::string& user, bool with_axis);
-  void place_at(const Vec2& point, double position, Block& block, Eigen::Vector4d& offset) const;
+  void location_at(const Vec2& point, double position, Block& block, Eigen::Vector4d& offset) const;
 
-  MarkerPlace place_;
+  MarkerLocation location_;
   bool rigid_ = false;
   std::vector<int> dofs_;
   std::vector<unsigned> depends_;  // one bit per entry of (p, e), for each unknown
@@ -99,7 +99,7 @@ class MarkerPair {
   enum Part { kPositionA = 0, kAxisA = 2, kPositionB = 4, kAxisB = 6 };
 
   /// Creates the pair of two locations; call bind() before it is evaluated.
-  MarkerPair(MarkerPlace a, MarkerPlace b) : a_(std::move(a)), b_(std::move(b)) {}
+  MarkerPair(MarkerLocation a, MarkerLocation b) : a_(std::move(a)), b_(std::move(b)) {}
 
   /// Looks up both bodies, see Marker::bind().
   /// @throws Error (input) as Marker::bind(), and for two locations on the ground or on the same
@@ -127,9 +127,9 @@ class MarkerPair {
   /// Returns the accelerations ÿ for q̈ = 0.
   const Values& convective() const { return convective_; }
 
-  /// Returns column k of Y.
+  /// Returns column k of the matrix Y = ∂y/∂q.
   Values column(size_t k) const;
-  /// Returns column k of the time derivative of Y.
+  /// Returns column k of the time derivative of the matrix Y = ∂y/∂q.
   Values column_rate(size_t k) const;
   /// Returns true if at least one of the points moves in its body.
   bool shifts() const { return a_.shifts() || b_.shifts(); }

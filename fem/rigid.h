@@ -25,7 +25,8 @@ class RigidClock {
 
 /// Creates the element of a planar rigid body (elements/rigid_body.h).
 /// @param length  length that turns the axis into a displacement: a size of the body [m]
-/// @param moves   true if the mass changes in time because of a material reservoir (fem/stored.h)
+/// @param moves   true if the mass changes in time because of a material reservoir
+/// (fem/material_reservoir.h)
 /// @throws Error (input) unless the length is positive.
 std::unique_ptr<Element> make_rigid_body(double length, bool moves = false);
 

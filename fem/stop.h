@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "fem/link.h"
+#include "fem/force_element.h"
 
 namespace flexmorph::fem {
 
@@ -37,7 +37,7 @@ struct StopData {
 /// Creates a stop between two markers; it has no mean force.
 /// @throws Error (input) unless k > 0, c, w >= 0 and finite, least < most of which one is finite;
 /// at bind() see Marker::bind(); (numerical) where points coincide that have a distance limit.
-std::unique_ptr<Link> make_stop(std::string name, MarkerPlace a, MarkerPlace b,
-                                const StopData& stop);
+std::unique_ptr<ForceElement> make_stop(std::string name, MarkerLocation a, MarkerLocation b,
+                                        const StopData& stop);
 
 }  // namespace flexmorph::fem

@@ -4,7 +4,7 @@ namespace flexmorph::fem {
 
 Local local_of(const Batch& x, int lane) {
   Local out;
-  const auto rows = [&](const Lanes* from, LocalRows& to) {
+  const auto rows = [&](const Pack* from, LocalRows& to) {
     to.resize(x.n_shapes, x.dim);
     for (int k = 0; k < x.n_local(); ++k) to.data()[k] = from[k][lane];
   };
@@ -14,7 +14,7 @@ Local local_of(const Batch& x, int lane) {
   return out;
 }
 
-void add_force_of_lane(const Term& term, const Batch& x, int lane, Lanes* force) {
+void add_force_of_lane(const Term& term, const Batch& x, int lane, Pack* force) {
   LocalRows f;
   f.setZero(x.n_shapes, x.dim);
   term.add_force(x.first + lane, local_of(x, lane), f);
@@ -22,7 +22,7 @@ void add_force_of_lane(const Term& term, const Batch& x, int lane, Lanes* force)
 }
 
 void add_tangent_of_lane(const Term& term, const Batch& x, int lane, const Weights& w,
-                         Lanes* tangent) {
+                         Pack* tangent) {
   const int n = x.n_local();
   LocalTangent t;
   t.setZero(n, n);

@@ -34,9 +34,9 @@ using LocalTangent = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 inline constexpr int kMaxFree = kMaxShapes * kMaxDim + 4;
 /// Generalized forces of an element with free lines: row dim k + c of shape function k, direction
 /// c, then one row per line around the element (see Side).
-using FreeForce = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxFree, 1>;
-/// Tangent matrix of an element with free lines; rows and columns are ordered as in FreeForce.
-using FreeTangent =
+using EulerianForce = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxFree, 1>;
+/// Tangent matrix of an element with free lines; rows and columns are ordered as in EulerianForce.
+using EulerianTangent =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxFree, kMaxFree>;
 
 /// Energies of a state, or of a term in one element [J].
@@ -83,7 +83,7 @@ class Term {
 
   /// Updates the data that depend on mesh, material and time.
   /// @param all  true for all elements, false for only the elements whose shape changes in time
-  virtual void prepare(const Element& element, const Factors& factors, bool all) = 0;
+  virtual void prepare(const Element& element, const ScaleFactors& factors, bool all) = 0;
 
   /// Adds the generalized force f (n_shapes x dim), a contribution to F in M q̈ + F = 0 (inertia
   /// terms also contain M q̈).
@@ -113,11 +113,11 @@ class Term {
 
 /// Adds the force of one element of a batch in the layout of BatchTerm::add_forces().
 /// @param lane  SIMD lane of the element
-void add_force_of_lane(const Term& term, const Batch& x, int lane, Lanes* force);
+void add_force_of_lane(const Term& term, const Batch& x, int lane, Pack* force);
 /// Adds the tangent matrix of one element of a batch in the layout of BatchTerm::add_tangents().
 /// @param lane  SIMD lane of the element
 void add_tangent_of_lane(const Term& term, const Batch& x, int lane, const Weights& w,
-                         Lanes* tangent);
+                         Pack* tangent);
 
 /// Interface of a term that evaluates eight elements at once, one per SIMD lane. Other terms are
 /// evaluated element by element.
@@ -126,10 +126,10 @@ class BatchTerm {
   virtual ~BatchTerm() = default;
   /// Adds the forces of Term::add_force().
   /// @param force  (n_shapes dim), entries dim k + c
-  virtual void add_forces(const Batch& x, Lanes* force) const = 0;
+  virtual void add_forces(const Batch& x, Pack* force) const = 0;
   /// Adds the tangent matrices of Term::add_tangent().
   /// @param tangent  (n_shapes dim)², by columns
-  virtual void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const = 0;
+  virtual void add_tangents(const Batch& x, const Weights& w, Pack* tangent) const = 0;
 };
 
 /// Interface of a term with an energy-conserving mean force over a time step (a discrete gradient).
@@ -162,14 +162,15 @@ class LinearMeanForce : public MeanForceTerm {
 
 /// Interface of a term that also has forces on free material lines, see Element::free_sides(). The
 /// lines are at their positions of the last Term::prepare().
-class FreeLineTerm {
+class EulerianLineTerm {
  public:
-  virtual ~FreeLineTerm() = default;
+  virtual ~EulerianLineTerm() = default;
   /// Adds the forces on the shape unknowns and on the lines of one element.
-  virtual void add_free_force(int e, const Local& x, FreeForce& force) const = 0;
-  /// Adds the derivatives of the forces of add_free_force(), weighted as in Term::add_tangent().
-  virtual void add_free_tangent(int e, const Local& x, const Weights& w,
-                                FreeTangent& tangent) const = 0;
+  virtual void add_eulerian_force(int e, const Local& x, EulerianForce& force) const = 0;
+  /// Adds the derivatives of the forces of add_eulerian_force(), weighted as in
+  /// Term::add_tangent().
+  virtual void add_eulerian_tangent(int e, const Local& x, const Weights& w,
+                                    EulerianTangent& tangent) const = 0;
 };
 
 /// Interface of a term whose force depends on the scale factors of a design.
@@ -181,8 +182,8 @@ class DesignedTerm {
   /// scale factors, for elements without free lines. The lines are at their positions of the last
   /// Term::prepare().
   /// @param psi  (n_shapes x dim)
-  virtual void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
-                                 FactorSlopes& out) const = 0;
+  virtual void add_scale_factor_gradient(int e, const Local& x, const LocalRows& psi,
+                                         ScaleFactorGradient& out) const = 0;
 };
 
 /// Interface of a term whose force is exactly the gradient of its strain energy U with respect to
@@ -191,7 +192,8 @@ class ElasticEnergy {
  public:
   virtual ~ElasticEnergy() = default;
   /// Adds weight ∂U/∂κ_c for the scale factors κ_c of all cells of the body.
-  virtual void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const = 0;
+  virtual void add_energy_gradient(int e, const Local& x, double weight,
+                                   ScaleFactorGradient& out) const = 0;
 };
 
 /// Interface of a term with power where material flows through the mesh. Terms without this
@@ -210,8 +212,9 @@ class FlowTerm {
   /// >= 7 Gauss points along the line, in order, of the element on one side of the line
   /// @param x     unknowns of that element
   /// @param out   (n) each
-  virtual void add_line_energy(std::span<const ShapeTable> /*line*/, const Local& /*x*/,
-                               LineEnergy& /*out*/) const {}
+  virtual void add_line_energy([[maybe_unused]] std::span<const ShapeTable> line,
+                               [[maybe_unused]] const Local& x,
+                               [[maybe_unused]] LineEnergy& out) const {}
 };
 
 /// Interface of a term or a force element with a load factor, which is 1 until the first call.

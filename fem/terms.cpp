@@ -49,31 +49,31 @@ std::string listed(const std::vector<std::string>& names, const std::string& las
 }
 
 /// Returns the names of the terms of a role for a kind of body.
-std::vector<std::string> of_role(const std::string& role, TermPlace place) {
+std::vector<std::string> of_role(const std::string& role, TermDomain domain) {
   std::vector<std::string> out;
   for (const TermRow* row : term_rows())
-    if (row->role == role && row->may_stand_in(place)) out.push_back(row->name);
+    if (row->role == role && row->may_stand_in(domain)) out.push_back(row->name);
   return out;
 }
 
 /// Returns the roles that this kind of body requires, in the order of the table.
-std::vector<std::string> required_roles(TermPlace place) {
+std::vector<std::string> required_roles(TermDomain domain) {
   std::vector<std::string> out;
   for (const TermRow* row : term_rows())
-    if (std::find(row->required_in.begin(), row->required_in.end(), place) !=
+    if (std::find(row->required_in.begin(), row->required_in.end(), domain) !=
             row->required_in.end() &&
         std::find(out.begin(), out.end(), row->role) == out.end())
       out.push_back(row->role);
   return out;
 }
 
-const char* noun_of(TermPlace place) {
-  switch (place) {
-    case TermPlace::plane:
+const char* noun_of(TermDomain domain) {
+  switch (domain) {
+    case TermDomain::plane:
       return "a plate in the plane";
-    case TermPlace::space:
+    case TermDomain::space:
       return "a plate in space";
-    case TermPlace::beam:
+    case TermDomain::beam:
       return "a beam";
   }
   return "";
@@ -81,41 +81,42 @@ const char* noun_of(TermPlace place) {
 
 }  // namespace
 
-bool TermRow::may_stand_in(TermPlace place) const {
-  return std::find(places.begin(), places.end(), place) != places.end();
+bool TermRow::may_stand_in(TermDomain domain) const {
+  return std::find(domains.begin(), domains.end(), domain) != domains.end();
 }
 
 bool TermRow::reads(const std::string& key) const {
   return std::any_of(keys.begin(), keys.end(), [&](const TermKey& k) { return k.name == key; });
 }
 
-std::vector<std::string> term_names(TermPlace place) {
+std::vector<std::string> term_names(TermDomain domain) {
   std::vector<std::string> out;
   for (const TermRow* row : term_rows())
-    if (row->may_stand_in(place)) out.push_back(row->name);
+    if (row->may_stand_in(domain)) out.push_back(row->name);
   return out;
 }
 
 const TermRow& term_row(const std::string& name) {
   if (const TermRow* row = registry().find(name)) return *row;
-  throw Error::input("term '" + name + "' is unknown; known are: " +
+  throw Error::input("term '" + name + "' is unknown; the available terms are: " +
                      joined(std::views::transform(term_rows(), &TermRow::name)));
 }
 
-std::vector<std::string> alternatives(const TermRow& row, TermPlace place) {
-  std::vector<std::string> out = of_role(row.role, place);
+std::vector<std::string> alternatives(const TermRow& row, TermDomain domain) {
+  std::vector<std::string> out = of_role(row.role, domain);
   std::erase(out, row.name);
   return out;
 }
 
-std::string refusal_of_terms(TermPlace place, std::span<const std::string> names, bool moves) {
+std::string refusal_of_terms(TermDomain domain, std::span<const std::string> names, bool moves) {
   std::vector<const TermRow*> rows;
   for (const std::string& name : names) {
     const TermRow& row = term_row(name);
-    if (!row.may_stand_in(place)) return quoted(name) + " is no term of " + noun_of(place);
+    if (!row.may_stand_in(domain)) return quoted(name) + " is not available for " + noun_of(domain);
     for (const TermRow* other : rows)
       if (other->role == row.role)
-        return quoted(row.name) + " stands in place of " + quoted(other->name);
+        return quoted(row.name) + " and " + quoted(other->name) +
+               " are alternatives; only one of them is allowed";
     rows.push_back(&row);
   }
   const auto has = [&](const std::string& role) {
@@ -126,16 +127,16 @@ std::string refusal_of_terms(TermPlace place, std::span<const std::string> names
       std::any_of(rows.begin(), rows.end(), [](const TermRow* row) { return row->elastic; });
   for (const TermRow* row : rows)
     if (row->acts_on_elastic && !elastic)
-      return quoted(row->name) + " acts on elastic terms, and the body has none";
+      return quoted(row->name) + " acts on elastic terms, but the body has no elastic term";
   for (const TermRow* row : term_rows())
-    if (moves && row->moves && row->may_stand_in(place) && !has(row->role))
-      return "a body that moves has " + listed(of_role(row->role, place), "or");
-  const std::vector<std::string> required = required_roles(place);
+    if (moves && row->moves && row->may_stand_in(domain) && !has(row->role))
+      return "a body that moves needs " + listed(of_role(row->role, domain), "or");
+  const std::vector<std::string> required = required_roles(domain);
   if (std::all_of(required.begin(), required.end(), has)) return "";
   std::string all;
   for (const std::string& role : required)
-    all += (all.empty() ? "" : " and ") + listed(of_role(role, place), "or");
-  return std::string(noun_of(place)) + " has " + all;
+    all += (all.empty() ? "" : " and ") + listed(of_role(role, domain), "or");
+  return std::string(noun_of(domain)) + " needs " + all;
 }
 
 double number_of(const TermRow& row, const std::string& key, const TermData& data) {

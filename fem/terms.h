@@ -14,7 +14,7 @@
 namespace flexmorph::fem {
 
 /// Kinds of bodies that a term may belong to.
-enum class TermPlace { plane, space, beam };
+enum class TermDomain { plane, space, beam };
 
 /// A number that a term reads from the definition of its body.
 struct TermKey {
@@ -47,15 +47,15 @@ struct TermRow {
 
   /// Role of the term; a body has at most one term of each role.
   std::string role;
-  std::vector<TermPlace> places;       ///< Kinds of bodies that the term may belong to.
-  std::vector<TermPlace> required_in;  ///< Kinds of bodies that need a term of this role.
-  bool moves = false;                  ///< True if a body that moves needs a term of this role.
-  bool designable = false;             ///< True if the term makes it possible to design its body.
-  bool acts_on_elastic = false;        ///< True if the term needs an elastic term in the same body.
-  bool on_cells = false;               ///< True if the term supports plates of cells (q4).
-  bool free_lines = true;              ///< True if the term supports free material lines.
-  std::vector<TermKey> keys;           ///< Numbers that the term reads.
-  std::vector<std::string> columns;    ///< Columns that the term writes to motion.csv.
+  std::vector<TermDomain> domains;      ///< Kinds of bodies that the term may belong to.
+  std::vector<TermDomain> required_in;  ///< Kinds of bodies that need a term of this role.
+  bool moves = false;                   ///< True if a body that moves needs a term of this role.
+  bool designable = false;              ///< True if the term makes it possible to design its body.
+  bool acts_on_elastic = false;      ///< True if the term needs an elastic term in the same body.
+  bool on_cells = false;             ///< True if the term supports plates of cells (q4).
+  bool eulerian_lines = true;        ///< True if the term supports free material lines.
+  std::vector<TermKey> keys;         ///< Numbers that the term reads.
+  std::vector<std::string> columns;  ///< Columns that the term writes to motion.csv.
 
   /// Returns the densities of an elastic term; null for other terms.
   std::vector<ElasticPart> (*elastic)(const TermData&) = nullptr;
@@ -64,7 +64,7 @@ struct TermRow {
   std::unique_ptr<Term> (*make)(const TermData&) = nullptr;
 
   /// Returns true if the term may belong to the given kind of body.
-  bool may_stand_in(TermPlace place) const;
+  bool may_stand_in(TermDomain domain) const;
   /// Returns true if the term reads the number with the given key.
   bool reads(const std::string& key) const;
 };
@@ -74,17 +74,17 @@ std::span<const TermRow* const> term_rows();
 /// Adds a row, see Registry::add().
 void register_term(const TermRow& row);
 /// Returns the names of all terms for the given kind of body.
-std::vector<std::string> term_names(TermPlace place);
+std::vector<std::string> term_names(TermDomain domain);
 /// Returns the row of a term.
 /// @throws Error (input) naming the known terms.
 const TermRow& term_row(const std::string& name);
 /// Returns the names of all other terms with the role of the given term, for the given kind of
 /// body.
-std::vector<std::string> alternatives(const TermRow& row, TermPlace place);
+std::vector<std::string> alternatives(const TermRow& row, TermDomain domain);
 
 /// Returns the reason why a body cannot have this combination of terms; empty if it can.
 /// @param moves  false if the body is static
-std::string refusal_of_terms(TermPlace place, std::span<const std::string> names, bool moves);
+std::string refusal_of_terms(TermDomain domain, std::span<const std::string> names, bool moves);
 
 /// Creates the terms with the given names, in their order.
 /// @throws Error (input) naming the known terms.

@@ -36,8 +36,8 @@ class Registry {
   /// @throws Error (input) when the name is empty or another row has it
   void add(const Row& row) {
     const std::string name = name_(row);
-    if (name.empty()) throw Error::input("a " + noun_ + " has a name");
-    if (find(name)) throw Error::input("there is another " + noun_ + " '" + name + "'");
+    if (name.empty()) throw Error::input("a " + noun_ + " must have a name");
+    if (find(name)) throw Error::input("the " + noun_ + " '" + name + "' exists already");
     rows_.push_back(&row);
   }
 

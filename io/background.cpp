@@ -29,7 +29,7 @@ void Background::rethrow() {
 void Background::then(std::function<void()> task) {
   if (!thread_.joinable()) return task();
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return tasks_.size() < kMost || failure_; });
+  changed_.wait(lock, [this] { return tasks_.size() < kMaxWaitingJobs || failure_; });
   rethrow();
   tasks_.push_back(std::move(task));
   changed_.notify_all();

@@ -22,15 +22,15 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
-  /// Adds a task. The task must own the data that it uses. The call waits while kMost tasks are in
-  /// the queue. After a task has thrown, the thread executes no further tasks.
+  /// Adds a task. The task must own the data that it uses. The call waits while kMaxWaitingJobs
+  /// tasks are in the queue. After a task has thrown, the thread executes no further tasks.
   /// @throws the exception of the first task that threw
   void then(std::function<void()> task);
   /// Waits until all tasks are done.
   /// @throws the exception of the first task that threw
   void wait();
 
-  static constexpr size_t kMost = 16;  ///< Largest number of tasks in the queue.
+  static constexpr size_t kMaxWaitingJobs = 16;  ///< Largest number of tasks in the queue.
 
  private:
   void work();

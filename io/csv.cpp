@@ -68,7 +68,7 @@ size_t add_cells(char* begin, char* line_end, char separator, std::vector<std::s
   }
 }
 
-size_t place_of(const CsvTable& table, const std::string& column) {
+size_t location_of(const CsvTable& table, const std::string& column) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), column);
   if (found != table.columns.end()) return static_cast<size_t>(found - table.columns.begin());
   throw Error::input("table: there is no column '" + column + "'; its columns are " +
@@ -92,7 +92,7 @@ std::vector<std::string> CsvTable::row(size_t r) const {
 std::vector<std::string> CsvTable::texts(const std::string& column) const {
   std::vector<std::string> out;
   out.reserve(n_rows());
-  for (size_t i = place_of(*this, column); i < cells_.size(); i += columns.size())
+  for (size_t i = location_of(*this, column); i < cells_.size(); i += columns.size())
     out.emplace_back(cells_[i]);
   return out;
 }
@@ -101,7 +101,7 @@ std::vector<double> CsvTable::numbers(const std::string& column) const {
   std::vector<double> out;
   out.reserve(n_rows());
   std::string with_point;
-  for (size_t i = place_of(*this, column); i < cells_.size(); i += columns.size()) {
+  for (size_t i = location_of(*this, column); i < cells_.size(); i += columns.size()) {
     std::string_view cell = cells_[i];
     if (decimal_comma && cell.find(',') != std::string_view::npos) {
       with_point = cell;
@@ -134,8 +134,9 @@ CsvTable read_csv(const std::string& path) {
       break;  // an empty line at the end
     } else if (const size_t n = add_cells(line, line_end, separator, out.cells_);
                n != out.columns.size()) {
-      throw Error::input(path + ":" + std::to_string(number) + ": " + std::to_string(n) +
-                         " values; the header has " + std::to_string(out.columns.size()));
+      throw Error::input(path + ":" + std::to_string(number) + ": this row has " +
+                         std::to_string(n) + " values, but the header has " +
+                         std::to_string(out.columns.size()));
     }
     line = next + (next < end ? 1 : 0);
   }

@@ -42,7 +42,7 @@ std::string owner_of(const std::string& folder) {
   return out;
 }
 
-std::string own_words() {
+std::string own_text() {
   std::array<char, 256> machine{};
   gethostname(machine.data(), machine.size() - 1);
   return "process " + std::to_string(getpid()) + " on '" + machine.data() + "'";
@@ -76,7 +76,9 @@ int lock_of(const std::string& list, int flags) {
 }
 
 [[noreturn]] void refuse_as_taken(const std::string& folder) {
-  refuse(folder, owner_of(folder) + " is filling it; wait for its end, or choose another with -o");
+  refuse(folder,
+         owner_of(folder) +
+             " is writing to it; wait until it has ended, or choose another folder with -o");
 }
 
 /// Opens and locks the list of a folder, and adds the process to it.
@@ -85,10 +87,10 @@ int take_list(const std::string& folder, int flags, bool empties) {
   const int list = lock_of(list_of(folder), O_RDWR | O_APPEND | O_NOFOLLOW | flags);
   if (list < 0 && (errno == EEXIST || errno == EWOULDBLOCK)) refuse_as_taken(folder);
   if (list < 0) refuse(folder, reason_of(errno));
-  const std::string line = kOwner + own_words() + "\n";
+  const std::string line = kOwner + own_text() + "\n";
   if ((empties && ftruncate(list, 0) != 0) ||
       write(list, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
-    refuse(folder, "its list cannot be written: " + reason_of(errno));
+    refuse(folder, "the list of its files cannot be written: " + reason_of(errno));
   return list;
 }
 
@@ -107,7 +109,7 @@ OutputFolder::OutputFolder(std::string path, Begin begin) : path_(std::move(path
   while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
   try {
     make();
-    if (begin == Begin::go_on && fs::is_regular_file(fs::symlink_status(list_of(path_)))) {
+    if (begin == Begin::keep_running && fs::is_regular_file(fs::symlink_status(list_of(path_)))) {
       list_ = take_list(path_, 0, false);
       read_list();
       return;
@@ -132,7 +134,7 @@ void OutputFolder::make() { fs::create_directories(path_); }
 void OutputFolder::move_away() {
   const std::string list = list_of(path_);
   if (!fs::is_regular_file(fs::symlink_status(list)))
-    refuse(path_, "it is not empty, and no run has filled it; choose another with -o");
+    refuse(path_, "it is not empty, and it does not contain a run; choose another folder with -o");
   const int lock = lock_of(list, O_RDWR | O_NOFOLLOW);
   if (lock < 0 && errno == EWOULDBLOCK) refuse_as_taken(path_);
   moved_to_ = free_name(path_);
@@ -152,12 +154,13 @@ void OutputFolder::read_list() {
 
 std::string OutputFolder::file(const std::string& name) {
   const fs::path relative(name);
-  if (leaves_folder(name)) refuse(path_, "'" + name.substr(0, 80) + "' is no name of a file in it");
+  if (leaves_folder(name))
+    refuse(path_, "'" + name.substr(0, 80) + "' is not the name of a file in this folder");
   const fs::path whole = fs::path(path_) / relative;
   const std::lock_guard<std::mutex> lock(mutex_);
   struct stat list {};
   if (fstat(list_, &list) != 0 || list.st_nlink == 0)
-    throw Error::numerical("output folder '" + path_ + "' was removed while it was filled");
+    throw Error::numerical("output folder '" + path_ + "' was removed during the run");
   std::error_code code;
   if (relative.has_parent_path()) fs::create_directories(whole.parent_path(), code);
   if (!code && !names_.insert(name).second) return whole.string();
@@ -197,12 +200,13 @@ void require_study_folder(const std::string& folder) {
     return;
   }
   if (!fs::is_regular_file(fs::symlink_status(list, error)))
-    refuse(folder, "it holds files that no study has written; choose another with -o");
+    refuse(folder,
+           "it contains files that were not written by a study; choose another folder with -o");
   std::ifstream names(list);
   for (std::string name; std::getline(names, name);)
     if (!name.starts_with(kOwner))
-      refuse(folder,
-             "it is the folder of a run, which wrote '" + name + "'; choose another with -o");
+      refuse(folder, "it is the folder of a run, which wrote '" + name +
+                         "'; choose another folder with -o");
 }
 
 FolderLock::FolderLock(const std::string& folder) {

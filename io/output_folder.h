@@ -19,9 +19,9 @@ namespace flexmorph::io {
 /// if that name exists). No results are removed.
 class OutputFolder {
  public:
-  /// Treatment of a folder with an earlier run: `anew` moves it away, `go_on` continues in it, and
-  /// the files in its list belong to this run, too.
-  enum class Begin { anew, go_on };
+  /// Treatment of a folder with an earlier run: `anew` moves it away, `keep_running` continues in
+  /// it, and the files in its list belong to this run, too.
+  enum class Begin { anew, keep_running };
   /// Takes the folder, which is created if it is missing.
   /// @throws Error (input) when a running process fills it (with its number and machine), when it
   ///         contains files but no list, or when it cannot be created or moved.

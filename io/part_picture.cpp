@@ -14,7 +14,7 @@
 namespace flexmorph::io {
 namespace {
 
-constexpr int kWidth = 960, kMostHigh = 720;       // pixels
+constexpr int kWidth = 960, kMaxHeight = 720;      // pixels
 constexpr int kTitle = 34, kBar = 46, kSide = 20;  // margins above, below and beside
 constexpr double kLargest = 0.125;  // largest displacement, as a fraction of the size of the part
 constexpr std::array<unsigned char, 3> kInPlace = {225, 225, 225};
@@ -43,7 +43,7 @@ class Painter {
         high = high.cwiseMax(p);
       }
     const Vec2 size = high - low;
-    scale_ = std::min(kWidth / size.x(), kMostHigh / size.y());
+    scale_ = std::min(kWidth / size.x(), kMaxHeight / size.y());
     corner_ = {low.x(), high.y()};
     out_.width = std::max(1, static_cast<int>(std::ceil(scale_ * size.x())));
     out_.height = std::max(1, static_cast<int>(std::ceil(scale_ * size.y())));
@@ -131,7 +131,7 @@ std::string bar(const PartPicture& picture, double x, double y, double width) {
   }
   return out + words(x, y + 28, "start", "0") +
          words(x + width, y + 28, "end",
-               to_text(picture.upper, 3) + " " + picture.unit + " and more");
+               to_text(picture.upper, 3) + " " + picture.unit + " or more");
 }
 
 }  // namespace
@@ -146,7 +146,9 @@ std::string part_svg(const PartMesh& mesh, const PartPicture& picture) {
     return std::all_of(all.begin(), all.end(), [](double v) { return std::isfinite(v); });
   };
   if (!finite(picture.values) || !finite(picture.displacement) || !(picture.upper > 0))
-    throw Error::numerical("picture of a part: a value is not finite, or none is above zero");
+    throw Error::numerical(
+        "picture of a part: a value is not finite, or the upper limit of the colours is not "
+        "positive");
   const Pixels pixels = Painter(mesh, picture).paint();
   const int width = std::max(pixels.width, kWidth / 2) + 2 * kSide,
             height = pixels.height + kTitle + kBar;

@@ -60,7 +60,8 @@ class CoarsePlate {
     along_ = across > 0 ? static_cast<int>(plate.points.size()) / (2 * (across + 1)) - 1 : 0;
     if (along_ < 1 || plate.density.size() != static_cast<size_t>(along_ * across) ||
         plate.points.size() != 2 * static_cast<size_t>((along_ + 1) * (across + 1)))
-      throw Error::input("plane frames: points and cells of a plate do not fit");
+      throw Error::input(
+          "pictures of planar plates: the numbers of points and cells of a plate do not match");
     stride_i_ = stride(scale * (point(1, 0) - point(0, 0)).norm());
     stride_j_ = stride(scale * (point(0, 1) - point(0, 0)).norm());
   }
@@ -164,7 +165,8 @@ std::string plane_frames_svg(const std::string& title, const std::vector<PlaneFr
   if (frames.empty()) throw Error::input("plane frames: there is no frame");
   View view;
   for (const PlaneFrame& frame : frames) view.take(frame);
-  if (!(view.low.x() <= view.high.x())) throw Error::input("plane frames: nothing is drawn");
+  if (!(view.low.x() <= view.high.x()))
+    throw Error::input("plane frames: there is nothing to draw");
   std::vector<SheetEntry> entries;
   for (const PlaneFrame& frame : frames) entries.push_back({frame.title, {picture(frame, view)}});
   return contact_sheet(title, entries, columns);

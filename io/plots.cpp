@@ -239,14 +239,14 @@ std::string panel_svg(const Panel& panel, double top, double width, double heigh
     out += text(left, top + 22, xml_escaped(panel.title), "font-size=\"14\" font-weight=\"bold\"");
   out += legend_svg(panel, legend, left, top + title_height);
   out += grid_lines(x, y);
-  const std::string place =
+  const std::string location =
       at("x", left, "y", frame_top) + at("width", right - left, "height", frame_bottom - frame_top);
   // A nested SVG element clips lines at the frame. A clip path would need a name, and names would
   // collide if several figures are in one report.
-  out += "<svg" + place + " viewBox=\"" + px(left) + " " + px(frame_top) + " " + px(right - left) +
-         " " + px(frame_bottom - frame_top) + "\">\n";
+  out += "<svg" + location + " viewBox=\"" + px(left) + " " + px(frame_top) + " " +
+         px(right - left) + " " + px(frame_bottom - frame_top) + "\">\n";
   for (size_t i = 0; i < panel.curves.size(); ++i) out += line_svg(panel.curves[i], i, x, y);
-  out += "</svg>\n<rect" + place + " fill=\"none\" stroke=\"#666\"/>\n";
+  out += "</svg>\n<rect" + location + " fill=\"none\" stroke=\"#666\"/>\n";
   for (size_t i = 0; i < panel.curves.size(); ++i) out += markers_svg(panel.curves[i], i, x, y);
   out += text(0.5 * (left + right), frame_bottom + 40, xml_escaped(panel.x.label),
               "text-anchor=\"middle\"");

@@ -25,7 +25,7 @@ std::string png(const Pixels& pixels) {
   writer->WriteToMemoryOn();
   writer->Write();
   vtkUnsignedCharArray* bytes = writer->GetResult();
-  if (!bytes) throw Error::numerical("VTK could not encode a picture");
+  if (!bytes) throw Error::numerical("VTK cannot encode a picture");
   return {reinterpret_cast<const char*>(bytes->GetPointer(0)),
           static_cast<size_t>(bytes->GetNumberOfValues())};
 }

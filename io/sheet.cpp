@@ -61,9 +61,9 @@ struct Page {
 /// Returns the font size [px] at which a title is at most as wide as a column. Bold letters of
 /// common fonts have a mean width of 0.65 times the font size.
 int fitting(const std::string& title) {
-  constexpr double kMost = 14, kLeast = 7, kLetter = 0.65;
+  constexpr double kMaxFontSize = 14, kMinFontSize = 7, kLetter = 0.65;
   const double size = kColumn / (kLetter * static_cast<double>(std::max<size_t>(1, title.size())));
-  return static_cast<int>(std::clamp(size, kLeast, kMost));
+  return static_cast<int>(std::clamp(size, kMinFontSize, kMaxFontSize));
 }
 
 std::string words(double x, double y, const std::string& content, int size) {

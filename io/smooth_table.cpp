@@ -17,15 +17,15 @@ constexpr size_t kOrder = 6;  // coefficients of a polynomial of degree 5
 
 // Smallest distance of times as a fraction of the length of the table. Closer times coincide when
 // they are scaled to [0, 1], or have so few different digits that derivatives are inaccurate.
-constexpr double kClosest = 1e-11;
+constexpr double kMinSpacing = 1e-11;
 // Largest error at the points as a fraction of the largest value. A larger error means that the
 // spline lost its accuracy by round-off.
-constexpr double kMissed = 1e-6;
+constexpr double kMaxMiss = 1e-6;
 
 void check(std::span<const double> times, std::span<const double> values) {
   if (times.size() != values.size())
-    throw Error::input("a table has as many times as values: " + std::to_string(times.size()) +
-                       " and " + std::to_string(values.size()));
+    throw Error::input("a table has as many times as values, not " + std::to_string(times.size()) +
+                       " times and " + std::to_string(values.size()) + " values");
   if (times.size() < 4)
     throw Error::input("a table has at least 4 points, not " + std::to_string(times.size()));
   const auto row = [](size_t i) { return "row " + std::to_string(i + 1) + " of the table: "; };
@@ -37,13 +37,15 @@ void check(std::span<const double> times, std::span<const double> values) {
                          to_text(times[i - 1]) + " s");
   }
   const double length = times.back() - times.front();
-  if (!std::isfinite(length)) throw Error::input("the times of the table span more than a number");
+  if (!std::isfinite(length))
+    throw Error::input("the time span of the table is not a finite number");
   for (size_t i = 1; i < times.size(); ++i)
-    if (times[i] - times[i - 1] < kClosest * length)
-      throw Error::input("row " + std::to_string(i + 1) + " of the table: " + to_text(times[i]) +
-                         " s follows " + to_text(times[i - 1]) +
-                         " s; between two rows lies at least 1e-11 of the whole, here " +
-                         to_text(kClosest * length, 3) + " s");
+    if (times[i] - times[i - 1] < kMinSpacing * length)
+      throw Error::input(
+          "row " + std::to_string(i + 1) + " of the table: " + to_text(times[i]) + " s follows " +
+          to_text(times[i - 1]) +
+          " s; the distance between two times must be at least 1e-11 of the time span, here " +
+          to_text(kMinSpacing * length, 3) + " s");
 }
 
 /// The B-splines that are not zero between the knots k and k + 1. Entry [p][r] is the B-spline of
@@ -66,7 +68,8 @@ Basis basis_at(double u, const double* knot, int degree) {
 }
 
 [[noreturn]] void refuse_times() {
-  throw Error::input("no smooth function goes through the table: its times are too uneven");
+  throw Error::input(
+      "no smooth function goes through the table: the distances between its times differ too much");
 }
 
 /// Returns the coefficients of the spline with given knots that has the given values at u.
@@ -158,17 +161,17 @@ SmoothTable::SmoothTable(std::span<const double> times, std::span<const double> 
   if (!std::all_of(coefficients_.begin(), coefficients_.end(),
                    [](double c) { return std::isfinite(c); }))
     throw Error::input("no smooth function goes through the table: its values are too large for " +
-                       std::string("the distances of its times"));
+                       std::string("the distances between its times"));
   double largest = 0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
   for (size_t i = 0; i < times.size(); ++i)
-    if (!(std::abs((*this)(times[i]).value - values[i]) <= kMissed * largest)) refuse_times();
+    if (!(std::abs((*this)(times[i]).value - values[i]) <= kMaxMiss * largest)) refuse_times();
 }
 
 Jet SmoothTable::operator()(double t) const {
   if (!(t >= first() && t <= last()))
     throw Error::input("the table covers " + to_text(first()) + " to " + to_text(last()) +
-                       " s; asked for t = " + to_text(t) + " s");
+                       " s, but its value at t = " + to_text(t) + " s is needed");
   const auto next = std::upper_bound(breaks_.begin() + 1, breaks_.end() - 1, t);
   const auto interval = static_cast<size_t>(next - breaks_.begin()) - 1;
   const double* c = &coefficients_[kOrder * interval];

@@ -94,7 +94,8 @@ std::string surfaces_svg(const std::string& title, const std::vector<SurfaceFram
   if (frames.empty()) throw Error::input("surfaces: there is no frame");
   View view;
   for (const SurfaceFrame& frame : frames) {
-    if (frame.mesh.dimension != 3) throw Error::input("surfaces: a frame is not in space");
+    if (frame.mesh.dimension != 3)
+      throw Error::input("surfaces: the mesh of a frame is not three-dimensional");
     view.take(frame);
   }
   std::vector<SheetEntry> entries;

@@ -55,7 +55,7 @@ CsvWriter::CsvWriter(std::string path, std::span<const std::string> columns,
   size_ = static_cast<off_t>(text.size());
 }
 
-CsvWriter CsvWriter::go_on(std::string path, size_t n_columns) {
+CsvWriter CsvWriter::keep_running(std::string path, size_t n_columns) {
   CsvWriter out(std::move(path), n_columns);
   out.open();
   std::ifstream file(out.path_, std::ios::binary);
@@ -81,8 +81,9 @@ void CsvWriter::row(std::span<const Cell> cells) { write(line_of(cells)); }
 
 std::string CsvWriter::line_of(std::span<const Cell> cells) const {
   if (cells.size() != n_columns_)
-    throw Error::numerical(path_ + ": a row of " + std::to_string(cells.size()) +
-                           " entries under " + std::to_string(n_columns_) + " columns");
+    throw Error::numerical(path_ + ": a row has " + std::to_string(cells.size()) +
+                           " entries, but the table has " + std::to_string(n_columns_) +
+                           " columns");
   std::string line;
   for (size_t i = 0; i < cells.size(); ++i) line += (i ? "," : "") + cells[i].text();
   return line + "\n";

@@ -47,7 +47,7 @@ class CsvWriter {
   CsvWriter(std::string path, std::span<const std::string> columns,
             std::span<const std::vector<Cell>> rows = {});
   /// Continues an existing file after its last whole row.
-  static CsvWriter go_on(std::string path, size_t n_columns);
+  static CsvWriter keep_running(std::string path, size_t n_columns);
   ~CsvWriter();
   /// Takes the file of another writer.
   CsvWriter(CsvWriter&& other) noexcept;

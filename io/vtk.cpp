@@ -26,22 +26,23 @@ namespace {
 
 /// Adds fields to point or cell data; place(k) is the index at which VTK stores value k of the
 /// field.
-template <class Place>
+template <class Location>
 void add_fields(vtkFieldData* data, std::span<const Field> fields, int n, const std::string& path,
-                Place place) {
+                Location location) {
   for (const Field& field : fields) {
     const int c = field.components;
     if (c < 1 || field.values.size() != static_cast<size_t>(n) * c)
       throw Error::numerical(path + ": field '" + field.name + "' has " +
-                             std::to_string(field.values.size()) + " values, wanted " +
-                             std::to_string(n) + " times " + std::to_string(c));
+                             std::to_string(field.values.size()) + " values, but " +
+                             std::to_string(n) + " times " + std::to_string(c) +
+                             " values are needed");
     vtkNew<vtkFloatArray> array;
     array->SetName(field.name.c_str());
     const int width = c == 2 ? 3 : c;
     array->SetNumberOfComponents(width);
     array->SetNumberOfTuples(n);
     for (int k = 0; k < n; ++k) {
-      float* tuple = array->GetPointer(static_cast<vtkIdType>(place(k)) * width);
+      float* tuple = array->GetPointer(static_cast<vtkIdType>(location(k)) * width);
       if (c == 2) tuple[2] = 0;
       for (int i = 0; i < c; ++i) {
         const double value = field.values[static_cast<size_t>(k) * c + i];
@@ -55,7 +56,7 @@ void add_fields(vtkFieldData* data, std::span<const Field> fields, int n, const 
   }
 }
 
-int same_place(int k) { return k; }
+int same_location(int k) { return k; }
 
 /// Writes data to a file. VTK writes into memory, so that all files appear in the same way.
 template <class Writer, class Data>
@@ -69,7 +70,7 @@ void write_xml(const std::string& path, Data* data) {
   writer->SetCompressionLevel(1);
   writer->WriteToOutputStringOn();
   const PlainNumbers plain;  // VTK prints ranges in the locale of the process
-  if (writer->Write() != 1) throw Error::numerical(path + ": VTK could not encode the data");
+  if (writer->Write() != 1) throw Error::numerical(path + ": VTK cannot encode the data");
   write_file(path, writer->GetOutputString());
 }
 
@@ -95,9 +96,9 @@ void write_cells(const std::string& path, vtkPoints* points, int type,
   vtkNew<vtkUnstructuredGrid> grid;
   grid->SetPoints(points);
   grid->SetCells(type, cells);
-  add_fields(grid->GetCellData(), cell_fields, static_cast<int>(nodes.size()), path, same_place);
+  add_fields(grid->GetCellData(), cell_fields, static_cast<int>(nodes.size()), path, same_location);
   add_fields(grid->GetPointData(), point_fields, static_cast<int>(points->GetNumberOfPoints()),
-             path, same_place);
+             path, same_location);
   write_xml<vtkXMLUnstructuredGridWriter>(path, grid.Get());
 }
 
@@ -157,7 +158,8 @@ void write_outlines(const std::string& path, std::span<const std::vector<Vec2>> 
   vtkNew<vtkPolyData> poly;
   poly->SetPoints(points);
   poly->SetLines(lines);
-  add_fields(poly->GetCellData(), cell_fields, static_cast<int>(outlines.size()), path, same_place);
+  add_fields(poly->GetCellData(), cell_fields, static_cast<int>(outlines.size()), path,
+             same_location);
   write_xml<vtkXMLPolyDataWriter>(path, poly.Get());
 }
 
@@ -192,8 +194,8 @@ void Series::add(double time, const std::string& file, int part) {
 void write_png(const std::string& path, const Grid& grid, std::span<const double> cell_values,
                const Picture& picture) {
   if (cell_values.size() != static_cast<size_t>(grid.n_cells()))
-    throw Error::numerical(path + ": " + std::to_string(cell_values.size()) + " values for " +
-                           std::to_string(grid.n_cells()) + " cells");
+    throw Error::numerical(path + ": " + std::to_string(cell_values.size()) +
+                           " values are given for " + std::to_string(grid.n_cells()) + " cells");
   const int n = picture.pixels_per_cell;
   Pixels pixels{grid.nx * n, grid.ny * n, 1};
   for (int y = grid.ny * n - 1; y >= 0; --y)

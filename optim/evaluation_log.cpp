@@ -14,7 +14,7 @@ namespace flexmorph::optim {
 namespace {
 
 const std::string kHead = "flexmorph evaluations 3\n";
-constexpr std::uint64_t kLargest = 1ULL << 32;  // largest plausible record [bytes]
+constexpr std::uint64_t kMaxRecordBytes = 1ULL << 32;  // largest plausible record [bytes]
 constexpr auto kSyncEvery = std::chrono::seconds(5);
 
 struct RecordHead {
@@ -111,7 +111,7 @@ bool same(const VectorXd& a, const VectorXd& b) {
           std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<size_t>(a.size())) == 0);
 }
 
-bool is_finite(const Response& r) {
+bool is_finite(const ProblemValues& r) {
   return std::isfinite(r.f) && r.df.allFinite() && r.g.allFinite() && r.dg.allFinite();
 }
 
@@ -147,7 +147,7 @@ std::optional<Evaluation> EvaluationLog::next(const VectorXd& x) {
   RecordHead head;
   std::vector<char> data;
   std::optional<Evaluation> found;
-  if (read_whole(file_, &head, sizeof head, end_) && head.bytes < kLargest) {
+  if (read_whole(file_, &head, sizeof head, end_) && head.bytes < kMaxRecordBytes) {
     data.resize(head.bytes);
     const auto at = end_ + static_cast<std::int64_t>(sizeof head);
     if (read_whole(file_, data.data(), data.size(), at) && crc_of(data) == head.crc)
@@ -179,7 +179,7 @@ void EvaluationLog::append(const Evaluation& evaluation) {
   synced_ = now;
 }
 
-Response RecordedProblem::evaluate(const VectorXd& x) {
+ProblemValues RecordedProblem::evaluate(const VectorXd& x) {
   if (std::optional<Evaluation> known = log_.next(x)) {
     acceptable_ = known->acceptable;
     if (!known->failure.empty()) throw Error::numerical(known->failure);

@@ -14,7 +14,7 @@ namespace flexmorph::optim {
 struct Evaluation {
   VectorXd x;              ///< Design (n).
   std::string failure;     ///< Reason why the state could not be solved; empty if it was solved.
-  Response response;       ///< Values and gradients at x; valid only if `failure` is empty.
+  ProblemValues response;  ///< Values and gradients at x; valid only if `failure` is empty.
   bool acceptable = true;  ///< True if Problem::acceptable() accepts the design.
 };
 
@@ -76,7 +76,7 @@ class RecordedProblem final : public Problem {
   VectorXd lower() const override { return problem_.lower(); }
   VectorXd upper() const override { return problem_.upper(); }
   VectorXd start() const override { return problem_.start(); }
-  Response evaluate(const VectorXd& x) override;
+  ProblemValues evaluate(const VectorXd& x) override;
   bool acceptable(const VectorXd& x) override;
   bool has_curvature() const override { return problem_.has_curvature(); }
   MatrixXd curvature(const VectorXd& x, double sigma, const VectorXd& lambda) override {

@@ -48,10 +48,10 @@ namespace {
 using Ipopt::Index;
 using Ipopt::Number;
 
-constexpr double kInfinity = 2e19;  // Ipopt treats it as infinite
-constexpr size_t kRemembered = 8;   // evaluations; they contain the current iterate
+constexpr double kInfinity = 2e19;      // Ipopt treats it as infinite
+constexpr size_t kKeptEvaluations = 8;  // evaluations; they contain the current iterate
 constexpr int kEvaluationsPerIteration = 2;
-constexpr int kMostRefusals = 20;  // in sequence; the step is then too small for progress
+constexpr int kMaxRefusals = 20;  // in sequence; the step is then too small for progress
 
 /// Exception that leaves Ipopt during an evaluation after the search has stopped.
 struct Halt {};
@@ -73,7 +73,7 @@ class Adapter final : public Ipopt::TNLP {
         lower_(lower),
         upper_(upper),
         most_evaluations_(most_evaluations) {
-    remembered_.push_back(start);
+    evaluated_.push_back(start);
   }
 
   bool get_nlp_info(Index& n, Index& m, Index& nnz_jac_g, Index& nnz_h_lag,
@@ -102,19 +102,19 @@ class Adapter final : public Ipopt::TNLP {
   }
 
   bool eval_f(Index n, const Number* x, bool, Number& value) override {
-    const Point* point = look_at(n, x);
+    const Point* point = analyse_at(n, x);
     if (point != nullptr) value = point->response.f;
     return point != nullptr;
   }
 
   bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
-    const Point* point = look_at(n, x);
+    const Point* point = analyse_at(n, x);
     if (point != nullptr) Eigen::Map<VectorXd>(gradient, n) = point->response.df;
     return point != nullptr;
   }
 
   bool eval_g(Index n, const Number* x, bool, Index m, Number* g) override {
-    const Point* point = look_at(n, x);
+    const Point* point = analyse_at(n, x);
     if (point != nullptr) Eigen::Map<VectorXd>(g, m) = point->response.g;
     return point != nullptr;
   }
@@ -129,7 +129,7 @@ class Adapter final : public Ipopt::TNLP {
       }
       return true;
     }
-    const Point* point = look_at(n, x);
+    const Point* point = analyse_at(n, x);
     if (point != nullptr) Eigen::Map<RowMajor>(values, m, n) = point->response.dg;
     return point != nullptr;
   }
@@ -162,7 +162,7 @@ class Adapter final : public Ipopt::TNLP {
                          Ipopt::IpoptCalculatedQuantities*) override {}
 
  private:
-  const Point* look_at(Index n, const Number* x);
+  const Point* analyse_at(Index n, const Number* x);
   /// Reads the variables of the current iterate. @return true if Ipopt provides them
   bool read_current(const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities,
                     VectorXd& x) const;
@@ -171,37 +171,37 @@ class Adapter final : public Ipopt::TNLP {
   bool curved_;
   VectorXd start_, lower_, upper_;
   int most_evaluations_;
-  std::deque<Point> remembered_;  // newest first
-  VectorXd refused_;              // last refused design; eval_g requests it again
+  std::deque<Point> evaluated_;  // newest first
+  VectorXd refused_;             // last refused design; eval_g requests it again
 };
 
 /// Returns the design at x; evaluates it unless it is stored. Null if the design was refused.
-const Point* Adapter::look_at(Index n, const Number* x) {
+const Point* Adapter::analyse_at(Index n, const Number* x) {
   const Eigen::Map<const VectorXd> at(x, n);
-  for (const Point& point : remembered_) {
+  for (const Point& point : evaluated_) {
     if (point.x == at) return &point;
   }
   if (refused_.size() == n && refused_ == at) return nullptr;
   if (search_.evaluations() >= most_evaluations_) {
     search_.stop(Stop::iteration_limit,
-                 "limit of " + std::to_string(most_evaluations_) + " evaluations reached");
+                 "the limit of " + std::to_string(most_evaluations_) + " evaluations is reached");
   }
   search_.stop_when_spent();
   if (search_.stopped()) throw Halt{};
   Point trial{at, {}};
   if (search_.evaluate(trial.x, trial.response) != Trial::taken) {
     refused_ = trial.x;
-    if (search_.refused_in_a_row() >= kMostRefusals) {
-      search_.stop(Stop::stalled, std::to_string(kMostRefusals) +
-                                      " steps in a row were refused, the last one because " +
-                                      search_.refusal());
+    if (search_.refused_in_a_row() >= kMaxRefusals) {
+      search_.stop(Stop::stalled,
+                   std::to_string(kMaxRefusals) +
+                       " steps in a row were rejected; the last reason: " + search_.refusal());
       throw Halt{};
     }
     return nullptr;
   }
-  remembered_.push_front(std::move(trial));
-  if (remembered_.size() > kRemembered) remembered_.pop_back();
-  return &remembered_.front();
+  evaluated_.push_front(std::move(trial));
+  if (evaluated_.size() > kKeptEvaluations) evaluated_.pop_back();
+  return &evaluated_.front();
 }
 
 bool Adapter::read_current(const Ipopt::IpoptData* data,
@@ -231,7 +231,7 @@ bool Adapter::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, 
   VectorXd x(search_.n());
   if (!read_current(data, quantities, x))
     throw Error::numerical("ipopt: the current design cannot be read");
-  const Point* point = look_at(search_.n(), x.data());
+  const Point* point = analyse_at(search_.n(), x.data());
   return point == nullptr || search_.row(search_.rows() + 1, *point);
 }
 
@@ -239,17 +239,17 @@ std::string name_of(Ipopt::ApplicationReturnStatus status) {
   switch (status) {
     case Ipopt::Solve_Succeeded:
     case Ipopt::Solved_To_Acceptable_Level:
-      return "Ipopt met its own tolerance";
+      return "Ipopt reached its own tolerance";
     case Ipopt::Infeasible_Problem_Detected:
-      return "Ipopt found no feasible design near the last one";
+      return "Ipopt found no feasible design near the last design";
     case Ipopt::Search_Direction_Becomes_Too_Small:
-      return "Ipopt's steps became too small";
+      return "the steps of Ipopt became too small";
     case Ipopt::Maximum_Iterations_Exceeded:
-      return "Ipopt used its iterations";
+      return "Ipopt reached its limit of iterations";
     case Ipopt::Restoration_Failed:
-      return "Ipopt's line search and its restoration failed";
+      return "the line search of Ipopt and its restoration phase failed";
     case Ipopt::Invalid_Number_Detected:
-      return "Ipopt could not step back from designs that cannot be evaluated";
+      return "Ipopt found no step to a design that can be evaluated";
     default:
       return "Ipopt ended with status " + std::to_string(status);
   }
@@ -325,17 +325,17 @@ std::string IpoptOptimizer::run(Search& search, const Point& start, const Vector
   const bool curved = c_.exact && search.has_curvature();
   set(*application->Options(), curved);
   if (application->Initialize("") != Ipopt::Solve_Succeeded) {  // "": no file ipopt.opt is read
-    throw Error::numerical("ipopt: it could not be initialized");
+    throw Error::numerical("ipopt: the optimizer could not be initialized");
   }
   const Ipopt::SmartPtr<Ipopt::TNLP> adapter =
       new Adapter(search, start, lower, upper,
                   kEvaluationsPerIteration * std::max(2, settings_.max_iterations), curved);
   try {
     std::string why = name_of(application->OptimizeTNLP(adapter));
-    if (!search.refusal().empty()) why += "; last refused design: " + search.refusal();
+    if (!search.refusal().empty()) why += "; the last rejected design: " + search.refusal();
     return why;
   } catch (const Halt&) {
-    return "the search stopped";
+    return "the optimization was stopped";
   }
 }
 

@@ -22,7 +22,7 @@ VectorXd solve_passive(const MatrixXd& G, const VectorXd& h, const std::vector<i
 /// The vector P(df + dgᵀ λ). Half its squared norm is convex and once differentiable in λ.
 class ProjectedGradient {
  public:
-  ProjectedGradient(const Response& r, const VectorXd& x, const VectorXd& lower,
+  ProjectedGradient(const ProblemValues& r, const VectorXd& x, const VectorXd& lower,
                     const VectorXd& upper, double tolerance)
       : at_lower_((x.array() <= lower.array() + tolerance)),
         at_upper_((x.array() >= upper.array() - tolerance)),
@@ -112,7 +112,7 @@ VectorXd nonnegative_minimum(const MatrixXd& G, const VectorXd& h) {
   return lambda;
 }
 
-KktPoint kkt_point(const Response& r, const VectorXd& x, const VectorXd& lower,
+KktPoint kkt_point(const ProblemValues& r, const VectorXd& x, const VectorXd& lower,
                    const VectorXd& upper, double active_tolerance) {
   std::vector<int> active;
   VectorXd scale(r.g.size());
@@ -136,7 +136,7 @@ KktPoint kkt_point(const Response& r, const VectorXd& x, const VectorXd& lower,
   return point;
 }
 
-double kkt_residual(const Response& r, const VectorXd& x, const VectorXd& lower,
+double kkt_residual(const ProblemValues& r, const VectorXd& x, const VectorXd& lower,
                     const VectorXd& upper, double active_tolerance) {
   return kkt_point(r, x, lower, upper, active_tolerance).residual;
 }

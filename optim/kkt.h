@@ -22,7 +22,7 @@ struct KktPoint {
 };
 
 /// Returns the residual of kkt_residual() together with its multipliers.
-KktPoint kkt_point(const Response& r, const VectorXd& x, const VectorXd& lower,
+KktPoint kkt_point(const ProblemValues& r, const VectorXd& x, const VectorXd& lower,
                    const VectorXd& upper, double active_tolerance);
 
 }  // namespace flexmorph::optim

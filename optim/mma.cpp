@@ -38,15 +38,16 @@ namespace {
 const Options kDefaults = {{"asyinit", 0.1}, {"asyincr", 1.05}, {"asydecr", 0.65}, {"asymin", 2e-4},
                            {"asymax", 10},   {"albefa", 0.1},   {"raa0", 0.01},    {"c", 1000},
                            {"fscale", 10},   {"gscale", 1}};
-constexpr int kMostRefusals = 10;     // in sequence
+constexpr int kMaxRefusals = 10;      // in sequence
 constexpr double kStepBack = 0.5;     // factor of the trust after a refused trial
 constexpr double kStepForward = 1.5;  // after an accepted trial; two compensate one refusal
-constexpr double kLeastTrust = 1e-4;
+constexpr double kMinTrust = 1e-4;
 constexpr double kConservative = 1e-10;          // relative tolerance for round-off
-constexpr int kMostInner = 15;                   // inner iterations of gcmma
+constexpr int kMaxInnerIterations = 15;          // inner iterations of gcmma
 constexpr double kSafety = 1.1, kSteepest = 10;  // Svanberg (2002), (4.5): factors of convexity
-constexpr double kForgotten = 0.1;  // factor of the last convexity at the start of an iteration
-constexpr int kRestorations = 3;    // number of last iterations that restore g <= 0 if infeasible
+constexpr double kConvexityDecay =
+    0.1;                          // factor of the last convexity at the start of an iteration
+constexpr int kRestorations = 3;  // number of last iterations that restore g <= 0 if infeasible
 
 struct Constants {
   double asyinit, asyincr, asydecr, asymin, asymax, albefa, raa0, c, fscale, gscale;
@@ -75,7 +76,7 @@ class Asymptotes {
     trust_ = std::min(1.0, kStepForward * trust_);
   }
 
-  void step_back() { trust_ = std::max(kLeastTrust, kStepBack * trust_); }
+  void step_back() { trust_ = std::max(kMinTrust, kStepBack * trust_); }
 
   VectorXd distance() const { return trust_ * distance_; }  ///< x - L = U - x (n)
   double move() const { return trust_ * move_limit_; }
@@ -122,7 +123,7 @@ class Mma final : public Optimizer {
 };
 
 void Mma::build(const Point& at, const Search& search, const Asymptotes& asymptotes) {
-  const Response& r = at.response;
+  const ProblemValues& r = at.response;
   const int m = search.m();
   const VectorXd distance = asymptotes.distance();
   const VectorXd reach = ((1 - c_.albefa) * distance).cwiseMin(asymptotes.move());
@@ -197,13 +198,14 @@ bool Mma::raise_convexity(const Point& at, const Point& trial) {
 /// trial was refused.
 bool Mma::advance(Point& at, Search& search, Asymptotes& asymptotes, MmaSolver& solver) {
   Point trial;
-  convexity_ = (kForgotten * convexity_).cwiseMax(c_.raa0);
+  convexity_ = (kConvexityDecay * convexity_).cwiseMax(c_.raa0);
   int inner = 0;
-  for (int refusals = 0; refusals < kMostRefusals;) {
+  for (int refusals = 0; refusals < kMaxRefusals;) {
     trial.x = propose(at, search, asymptotes, solver);
     if (search.evaluate(trial.x, trial.response) == Trial::taken) {
-      const bool goes_on = conservative_ && !restored_ && !search.spent() && inner++ < kMostInner;
-      if (goes_on && raise_convexity(at, trial)) continue;
+      const bool keeps_running =
+          conservative_ && !restored_ && !search.spent() && inner++ < kMaxInnerIterations;
+      if (keeps_running && raise_convexity(at, trial)) continue;
       std::swap(at, trial);
       asymptotes.advance(at.x);
       return true;
@@ -213,9 +215,9 @@ bool Mma::advance(Point& at, Search& search, Asymptotes& asymptotes, MmaSolver& 
     asymptotes.step_back();
     ++refusals;
   }
-  search.stop(Stop::stalled, std::to_string(kMostRefusals) +
-                                 " steps in a row were refused, the last one because " +
-                                 search.refusal());
+  search.stop(Stop::stalled,
+              std::to_string(kMaxRefusals) +
+                  " steps in a row were rejected; the last reason: " + search.refusal());
   return false;
 }
 
@@ -233,7 +235,7 @@ Result Mma::minimize(Problem& problem, const Observer& observe) {
   Result result = search.result();
   if (unsolved_ > 0) {
     result.message += "; " + std::to_string(unsolved_) + " of " + std::to_string(subproblems_) +
-                      " subproblems stayed unsolved (largest KKT residual " +
+                      " subproblems were not solved to their tolerance (largest KKT residual " +
                       scientific(worst_kkt_) + ")";
   }
   return result;

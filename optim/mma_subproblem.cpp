@@ -10,8 +10,8 @@ namespace flexmorph::optim {
 namespace {
 
 constexpr double kLastEpsilon = 1e-9;
-constexpr double kSolved = 1e-6;  // largest KKT residual of a solved subproblem
-constexpr int kNewtonSteps = 60;  // per value of ε; about 5 are typical
+constexpr double kMaxKktResidual = 1e-6;  // largest KKT residual of a solved subproblem
+constexpr int kNewtonSteps = 60;          // per value of ε; about 5 are typical
 constexpr int kHalvings = 50;
 constexpr int kManyConstraints = 8;         // from here on Newton steps take milliseconds
 constexpr double kTowardsBound = 1 / 1.01;  // fraction of the distance to the nearest bound
@@ -217,7 +217,7 @@ void MmaSolver::follow_barrier(const MmaSubproblem& p) {
 
 void MmaSolver::measure_kkt(const MmaSubproblem& p) {
   solution_.kkt = residual(p, 0).largest;
-  solution_.solved = solution_.kkt <= kSolved;
+  solution_.solved = solution_.kkt <= kMaxKktResidual;
 }
 
 const MmaSolution& MmaSolver::solve(const MmaSubproblem& p) {

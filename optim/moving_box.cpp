@@ -5,7 +5,7 @@
 namespace flexmorph::optim {
 namespace {
 
-constexpr int kMostIdleRuns = 14;  // in sequence; the box is then about 1e-4 of the first one
+constexpr int kMaxUnimprovedRuns = 14;  // in sequence; the box is then about 1e-4 of the first one
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void search_in_boxes(Search& search, double box, const BoxRun& run) {
     return;
   }
   double size = box;
-  int idle = 0;
+  int unimproved_runs = 0;
   while (!search.stopped()) {
     const Point centre = search.best();
     const VectorXd lower = (centre.x.array() - size).matrix().cwiseMax(search.lower());
@@ -29,13 +29,13 @@ void search_in_boxes(Search& search, double box, const BoxRun& run) {
     const double moved = (search.best().x - centre.x).lpNorm<Eigen::Infinity>();
     if (moved == 0) {
       size *= 0.5;
-      if (++idle >= kMostIdleRuns) {
-        search.stop(
-            Stop::stalled,
-            std::to_string(idle) + " boxes in a row held no better design; the last run: " + why);
+      if (++unimproved_runs >= kMaxUnimprovedRuns) {
+        search.stop(Stop::stalled,
+                    std::to_string(unimproved_runs) +
+                        " boxes in a row contained no better design; the last run: " + why);
       }
     } else {
-      idle = 0;
+      unimproved_runs = 0;
       if (moved > 0.99 * size) size = std::min(box, 2 * size);
     }
   }

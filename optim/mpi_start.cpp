@@ -31,8 +31,7 @@ void start_mpi_for_ipopt() {
     return;
   if (const int code = start(nullptr, nullptr); code != 0)
     throw Error::numerical(
-        "ipopt: MPI, which its linear solver needs, does not start: MPI_Init "
-        "returned " +
+        "ipopt: MPI, which its linear solver needs, cannot be started: MPI_Init returned " +
         std::to_string(code));
 }
 

@@ -37,13 +37,13 @@ std::string name_of(nlopt_result result) {
   switch (result) {
     case NLOPT_FTOL_REACHED:
     case NLOPT_XTOL_REACHED:
-      return "NLopt could not improve within its smallest steps";
+      return "NLopt found no better design with its smallest steps";
     case NLOPT_MAXEVAL_REACHED:
-      return "NLopt used its evaluations";
+      return "NLopt reached its limit of evaluations";
     case NLOPT_ROUNDOFF_LIMITED:
       return "NLopt was limited by round-off";
     case NLOPT_SUCCESS:
-      return "NLopt ended by itself";
+      return "NLopt ended without a reason";
     case NLOPT_FORCED_STOP:
       return "NLopt was stopped";
     default:
@@ -51,10 +51,10 @@ std::string name_of(nlopt_result result) {
   }
 }
 
-constexpr double kWall = 1e6;      // f of a refused design, in units of 1 + |f|
-constexpr double kBoxOfMma = 1.5;  // default box, in move limits
+constexpr double kRefusedValue = 1e6;  // f of a refused design, in units of 1 + |f|
+constexpr double kBoxOfMma = 1.5;      // default box, in move limits
 constexpr double kScaleOfMma = 30, kScaleOfCcsaq = 10;
-constexpr int kMostRefusals = 10;  // in sequence; each divides NLopt's step by about ten
+constexpr int kMaxRefusals = 10;  // in sequence; each divides NLopt's step by about ten
 
 /// One run of NLopt. The C library holds the address of this object, therefore it cannot be moved.
 class Run {
@@ -67,7 +67,7 @@ class Run {
                  int evaluations);
 
  private:
-  void look_at(const Eigen::Map<const VectorXd>& x);
+  void analyse_at(const Eigen::Map<const VectorXd>& x);
   template <typename Use>
   void guarded(unsigned n, const double* x, const Use& use);
   static double objective(unsigned n, const double* x, double* gradient, void* self);
@@ -86,7 +86,7 @@ class Run {
 /// Stores the response at x in last_. A refused design gets the constraints of the start and an
 /// objective far above that of the start, so that NLopt increases the curvature of its
 /// approximations and shortens its step.
-void Run::look_at(const Eigen::Map<const VectorXd>& x) {
+void Run::analyse_at(const Eigen::Map<const VectorXd>& x) {
   if (exception_ || search_.stopped() || x == last_.x) return;
   last_.x = x;
   if (search_.evaluate(last_.x, last_.response) == Trial::taken) {
@@ -94,12 +94,12 @@ void Run::look_at(const Eigen::Map<const VectorXd>& x) {
     return;
   }
   last_.response = start_.response;
-  last_.response.f += kWall * (1 + std::abs(last_.response.f));
-  if (search_.refused_in_a_row() >= kMostRefusals) nlopt_force_stop(opt_);
+  last_.response.f += kRefusedValue * (1 + std::abs(last_.response.f));
+  if (search_.refused_in_a_row() >= kMaxRefusals) nlopt_force_stop(opt_);
   if (search_.evaluations() >= settings_.max_iterations) {
     search_.stop(Stop::iteration_limit,
-                 "limit of " + std::to_string(settings_.max_iterations) +
-                     " evaluations reached; the last design was refused: " + search_.refusal());
+                 "the limit of " + std::to_string(settings_.max_iterations) +
+                     " evaluations is reached; the last design was rejected: " + search_.refusal());
   }
   search_.stop_when_spent();
 }
@@ -109,7 +109,7 @@ void Run::look_at(const Eigen::Map<const VectorXd>& x) {
 template <typename Use>
 void Run::guarded(unsigned n, const double* x, const Use& use) {
   try {
-    look_at({x, n});
+    analyse_at({x, n});
   } catch (...) {
     exception_ = std::current_exception();
     last_.response = start_.response;
@@ -121,7 +121,7 @@ void Run::guarded(unsigned n, const double* x, const Use& use) {
 double Run::objective(unsigned n, const double* x, double* gradient, void* self) {
   Run& run = *static_cast<Run*>(self);
   double f = 0;
-  run.guarded(n, x, [&](const Response& r) {
+  run.guarded(n, x, [&](const ProblemValues& r) {
     f = run.scale_ * r.f;
     if (gradient != nullptr) Eigen::Map<VectorXd>(gradient, n) = run.scale_ * r.df;
   });
@@ -132,7 +132,7 @@ void Run::constraints(unsigned m, double* g, unsigned n, const double* x, double
                       void* self) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Run& run = *static_cast<Run*>(self);
-  run.guarded(n, x, [&](const Response& r) {
+  run.guarded(n, x, [&](const ProblemValues& r) {
     Eigen::Map<VectorXd>(g, m) = run.scale_ * r.g;
     if (gradient != nullptr) Eigen::Map<RowMajor>(gradient, m, n) = run.scale_ * r.dg;
   });
@@ -143,9 +143,9 @@ std::string Run::go(nlopt_algorithm algorithm, const VectorXd& lower, const Vect
   const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(
       nlopt_create(algorithm, static_cast<unsigned>(search_.n())), nlopt_destroy);
   opt_ = opt.get();
-  if (!opt) throw Error::numerical("nlopt: the optimizer could not be made");
+  if (!opt) throw Error::numerical("nlopt: the optimizer could not be created");
   const auto check = [](nlopt_result result) {
-    if (result < 0) throw Error::numerical("nlopt: " + name_of(result) + " while it was set up");
+    if (result < 0) throw Error::numerical("nlopt: " + name_of(result) + " during its setup");
   };
   check(nlopt_set_min_objective(opt_, &Run::objective, this));
   check(nlopt_set_lower_bounds(opt_, lower.data()));
@@ -163,7 +163,7 @@ std::string Run::go(nlopt_algorithm algorithm, const VectorXd& lower, const Vect
   const nlopt_result result = nlopt_optimize(opt_, x.data(), &value);
   if (exception_) std::rethrow_exception(exception_);
   const bool refused = result == NLOPT_FORCED_STOP && search_.refused_in_a_row() > 0;
-  return refused ? "the last designs were refused: " + search_.refusal() : name_of(result);
+  return refused ? "the last designs were rejected: " + search_.refusal() : name_of(result);
 }
 
 class Nlopt final : public Optimizer {

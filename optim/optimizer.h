@@ -14,15 +14,15 @@ namespace flexmorph::optim {
 /// One row of the history: an iteration (mma, ipopt) or an evaluation (NLopt, which has no callback
 /// for iterations).
 struct Iterate {
-  int iteration = 0;                   ///< Number of the row, from 1.
-  int evaluations = 0;                 ///< Number of evaluations of the problem so far.
-  const VectorXd* x = nullptr;         ///< Design (n).
-  const Response* response = nullptr;  ///< Values and gradients at x.
-  double kkt = 0;                      ///< KKT residual at x, see kkt_residual().
-  double violation = 0;                ///< Largest constraint value g, at least 0.
-  double change = 0;                   ///< Largest |x - x of the previous row|, 0 in the first row.
-  bool improved = false;               ///< True if x is a new best usable design.
-  double seconds = 0;                  ///< CPU seconds in the optimizer itself since the last row.
+  int iteration = 0;                        ///< Number of the row, from 1.
+  int evaluations = 0;                      ///< Number of evaluations of the problem so far.
+  const VectorXd* x = nullptr;              ///< Design (n).
+  const ProblemValues* response = nullptr;  ///< Values and gradients at x.
+  double kkt = 0;                           ///< KKT residual at x, see kkt_residual().
+  double violation = 0;                     ///< Largest constraint value g, at least 0.
+  double change = 0;      ///< Largest |x - x of the previous row|, 0 in the first row.
+  bool improved = false;  ///< True if x is a new best usable design.
+  double seconds = 0;     ///< CPU seconds in the optimizer itself since the last row.
 };
 
 /// A function that is called with every row of the history; it returns false to stop the run.
@@ -43,7 +43,7 @@ std::string to_string(Stop stop);
 
 /// Criterion for a stagnating search. It is met if the objective has stayed within a narrow band
 /// over the last rows, and the last of these rows is feasible and nearly meets the KKT conditions.
-struct Rest {
+struct StoppingWindow {
   int rows = 15;  ///< Number of rows over which the objective is compared; 0: no criterion.
   double objective = 1e-3;  ///< Width of the band of the objective; for a logarithm, relative.
   double kkt = 1e-3;        ///< Largest KKT residual of the last row; infinite: any residual.
@@ -62,7 +62,7 @@ struct Settings {
   double kkt_tolerance = 1e-4;
   double feasibility = 1e-5;    ///< Largest constraint value g of a feasible design.
   double change_tolerance = 0;  ///< Stops after 3 rows in sequence with less change; 0: off.
-  Rest rest = {};               ///< Criterion of stagnation that stops the run as well.
+  StoppingWindow rest = {};     ///< Criterion of stagnation that stops the run as well.
 
   /// True if the run stops when the best usable design has improved by less than Verdict::kPlateau
   /// over Verdict::kPlateauRows rows.
@@ -78,7 +78,7 @@ struct Settings {
 /// The result of an optimization.
 struct Result {
   VectorXd x;                           ///< Best feasible design, or the least infeasible one (n).
-  Response response;                    ///< Values and gradients at x.
+  ProblemValues response;               ///< Values and gradients at x.
   double kkt = 0, violation = 0;        ///< KKT residual and design_violation() at x.
   int iterations = 0, evaluations = 0;  ///< Number of rows of the history and of evaluations.
   Stop stop = Stop::failed;             ///< Reason why the run ended.
@@ -121,7 +121,7 @@ void register_optimizer(const OptimizerRow& row);
 /// P sets those entries to zero that push against an active bound. The multipliers λ come from
 /// non-negative least squares.
 /// @param active_tolerance  distance below which constraints and bounds count as active
-double kkt_residual(const Response& r, const VectorXd& x, const VectorXd& lower,
+double kkt_residual(const ProblemValues& r, const VectorXd& x, const VectorXd& lower,
                     const VectorXd& upper, double active_tolerance = 1e-4);
 
 }  // namespace flexmorph::optim

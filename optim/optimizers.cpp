@@ -71,14 +71,14 @@ std::unique_ptr<Optimizer> make_optimizer(const Settings& settings) {
   const OptimizerRow* row = registry().find(settings.name);
   if (row == nullptr) {
     throw Error::input("optimizer '" + settings.name +
-                       "' is not known; there are: " + joined(optimizer_names()));
+                       "' is unknown; the available optimizers are: " + joined(optimizer_names()));
   }
   check_setting(settings.max_iterations >= 1, "max_iterations is at least 1");
   check_setting(settings.kkt_tolerance >= 0, "kkt_tolerance is not negative");
   check_setting(settings.feasibility > 0, "feasibility is positive");
   check_setting(settings.change_tolerance >= 0, "change_tolerance is not negative");
   check_setting(settings.rest.rows >= 0 && settings.rest.objective >= 0 && settings.rest.kkt >= 0,
-                "rows and tolerances of a rest are not negative");
+                "rows and tolerances of the stopping window must not be negative");
   check_setting(settings.move_limit > 0 && std::isfinite(settings.move_limit),
                 "move_limit is positive");
   return row->make(settings);
@@ -89,8 +89,9 @@ Options with_defaults(const Settings& settings, const Options& defaults) {
   for (const auto& [name, value] : settings.options) {
     const auto known = options.find(name);
     if (known == options.end())
-      throw Error::input("optimizer '" + settings.name + "': option '" + name +
-                         "' is not known; there are: " + joined(std::views::keys(defaults)));
+      throw Error::input(
+          "optimizer '" + settings.name + "': option '" + name +
+          "' is unknown; the available options are: " + joined(std::views::keys(defaults)));
     if (!std::isfinite(value)) {
       throw Error::input("optimizer '" + settings.name + "': option '" + name + "' is not finite");
     }

@@ -17,7 +17,7 @@ constexpr double kGoal = 1e-9;  // largest residual at convergence
 // products.
 constexpr double kStarts[] = {0.01, 1, 100};
 constexpr double kShortStep = 0.1;
-constexpr int kMostShort = 3;        // in sequence; then the next attempt begins
+constexpr int kMaxShortSteps = 3;    // in sequence; then the next attempt begins
 constexpr double kStartSlack = 0.1;  // lower bound of slacks at the start
 constexpr double kToBound = 0.9;  // smallest limit of a step, as a fraction of the way to the bound
 constexpr double kGrowth = 10;    // largest factor of the infeasibility in one step
@@ -26,7 +26,7 @@ constexpr int kHalvings = 10;
 constexpr double kClose = 10;             // ratio of E to the coupling below which a row is close
 constexpr double kPredictorError = 1e-2;  // relative tolerance of conjugate gradients
 constexpr double kCorrectorError = 1e-5;  // a larger tolerance costs steps
-constexpr int kMostIterations = 20;
+constexpr int kMaxIterations = 20;
 
 double fastest_decrease(const VectorXd& step, const VectorXd& v) {
   return (-step.array() / v.array()).maxCoeff();
@@ -35,7 +35,7 @@ double fastest_decrease(const VectorXd& step, const VectorXd& v) {
 }  // namespace
 
 PredictorCorrector::PredictorCorrector(int n, int m) : n_(n), m_(m) {
-  for (Eigen::ArrayXd* w : {&to_upp_, &to_low_, &room_alpha_, &room_beta_, &plam_, &qlam_, &up_,
+  for (Eigen::ArrayXd* w : {&to_upp_, &to_low_, &gap_alpha_, &gap_beta_, &plam_, &qlam_, &up_,
                             &down_, &root_, &h_, &in_x_, &lacking_.xi, &lacking_.eta}) {
     *w = Eigen::ArrayXd::Zero(n);
   }
@@ -69,8 +69,8 @@ void PredictorCorrector::begin(const MmaSubproblem& p, double product, MmaVariab
 
 /// Updates all quantities that depend on x and λ alone.
 void PredictorCorrector::functions(const MmaSubproblem& p, const MmaVariables& at) {
-  room_alpha_ = (at.x - p.alpha).array();
-  room_beta_ = (p.beta - at.x).array();
+  gap_alpha_ = (at.x - p.alpha).array();
+  gap_beta_ = (p.beta - at.x).array();
   to_upp_ = (p.upp - at.x).array().inverse();
   to_low_ = (at.x - p.low).array().inverse();
   plam_ = p.p0.array();
@@ -95,8 +95,8 @@ double PredictorCorrector::infeasibility() const {
 
 /// Sets the residuals of the products for the predictor, whose target is zero.
 void PredictorCorrector::predict(const MmaVariables& at) {
-  lacking_.xi = -at.xi.array() * room_alpha_;
-  lacking_.eta = -at.eta.array() * room_beta_;
+  lacking_.xi = -at.xi.array() * gap_alpha_;
+  lacking_.eta = -at.eta.array() * gap_beta_;
   lacking_.mu = -at.mu.array() * at.y.array();
   lacking_.s = -at.s.array() * at.lambda.array();
   lacking_.zeta = -at.zeta * at.z;
@@ -123,8 +123,8 @@ double PredictorCorrector::mean_product(const MmaVariables& at, double t) const 
   const auto sum = [&](const auto& v, const auto& dv, const auto& w, const auto& dw, double sign) {
     return ((v.array() + t * dv.array()) * (w.array() + sign * t * dw.array())).sum();
   };
-  const double total = sum(at.xi, step_.xi, room_alpha_, step_.x, 1) +
-                       sum(at.eta, step_.eta, room_beta_, step_.x, -1) +
+  const double total = sum(at.xi, step_.xi, gap_alpha_, step_.x, 1) +
+                       sum(at.eta, step_.eta, gap_beta_, step_.x, -1) +
                        sum(at.mu, step_.mu, at.y, step_.y, 1) +
                        sum(at.lambda, step_.lambda, at.s, step_.s, 1) +
                        (at.zeta + t * step_.zeta) * (at.z + t * step_.z);
@@ -135,8 +135,8 @@ double PredictorCorrector::mean_product(const MmaVariables& at, double t) const 
 void PredictorCorrector::normal_matrix(const MmaSubproblem& p, const MmaVariables& at) {
   up_ = to_upp_.square();
   down_ = to_low_.square();
-  root_ = (2 * (plam_ * up_ * to_upp_ + qlam_ * down_ * to_low_) + at.xi.array() / room_alpha_ +
-           at.eta.array() / room_beta_)
+  root_ = (2 * (plam_ * up_ * to_upp_ + qlam_ * down_ * to_low_) + at.xi.array() / gap_alpha_ +
+           at.eta.array() / gap_beta_)
               .sqrt()
               .inverse();
   up_ *= root_;
@@ -191,7 +191,7 @@ bool PredictorCorrector::solve_normal(const MmaSubproblem& p, double tolerance) 
   conjugate_ = preconditioned_;
   double norm = residual_.dot(preconditioned_);
   const double goal = tolerance * tolerance * norm;
-  for (int iteration = 0; iteration < kMostIterations && norm > goal; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations && norm > goal; ++iteration) {
     work_.noalias() = W_ * conjugate_;
     image_ = own_.cwiseProduct(conjugate_) + p.a * (z_over_zeta_ * p.a.dot(conjugate_));
     image_.noalias() += W_.transpose() * work_;
@@ -210,7 +210,7 @@ bool PredictorCorrector::solve_normal(const MmaSubproblem& p, double tolerance) 
 /// variables except λ.
 void PredictorCorrector::direction(const MmaSubproblem& p, const MmaVariables& at,
                                    double tolerance) {
-  h_ = (lacking_.xi / room_alpha_ - lacking_.eta / room_beta_ - in_x_) * root_;
+  h_ = (lacking_.xi / gap_alpha_ - lacking_.eta / gap_beta_ - in_x_) * root_;
   const double in_z = lacking_.zeta / at.z - in_z_;
   step_.y.array() = lacking_.mu / at.y.array() - in_y_;
   rhs_.array() = in_g_ - inverse_y_ * step_.y.array() + lacking_.s / at.lambda.array();
@@ -225,8 +225,8 @@ void PredictorCorrector::direction(const MmaSubproblem& p, const MmaVariables& a
   step_.x.array() = root_ * work_.array();
   step_.y.array() = (step_.y + step_.lambda).array() * inverse_y_;
   step_.z = z_over_zeta_ * (p.a.dot(step_.lambda) + in_z);
-  step_.xi.array() = (lacking_.xi - at.xi.array() * step_.x.array()) / room_alpha_;
-  step_.eta.array() = (lacking_.eta + at.eta.array() * step_.x.array()) / room_beta_;
+  step_.xi.array() = (lacking_.xi - at.xi.array() * step_.x.array()) / gap_alpha_;
+  step_.eta.array() = (lacking_.eta + at.eta.array() * step_.x.array()) / gap_beta_;
   step_.mu.array() = (lacking_.mu - at.mu.array() * step_.y.array()) / at.y.array();
   step_.s.array() = (lacking_.s - at.s.array() * step_.lambda.array()) / at.lambda.array();
   step_.zeta = (lacking_.zeta - at.zeta * step_.z) / at.z;
@@ -243,8 +243,8 @@ double PredictorCorrector::longest_step(const MmaVariables& at) const {
                                 {&step_.s, &at.s}}) {
     fastest = std::max(fastest, fastest_decrease(*step, *v));
   }
-  fastest = std::max(fastest, (-step_.x.array() / room_alpha_).maxCoeff());
-  fastest = std::max(fastest, (step_.x.array() / room_beta_).maxCoeff());
+  fastest = std::max(fastest, (-step_.x.array() / gap_alpha_).maxCoeff());
+  fastest = std::max(fastest, (step_.x.array() / gap_beta_).maxCoeff());
   fastest = std::max({fastest, -step_.z / at.z, -step_.zeta / at.zeta});
   return 1 / fastest;
 }
@@ -262,7 +262,7 @@ int PredictorCorrector::solve(const MmaSubproblem& p, MmaVariables& at) {
 bool PredictorCorrector::attempt(const MmaSubproblem& p, MmaVariables& at, int& steps) {
   residuals(p, at);
   int short_ones = 0;
-  for (int step = 0; step < kSteps && short_ones < kMostShort; ++step, ++steps) {
+  for (int step = 0; step < kSteps && short_ones < kMaxShortSteps; ++step, ++steps) {
     predict(at);
     const double before = infeasibility();
     if (std::max(before, largest_product()) <= kGoal) return true;

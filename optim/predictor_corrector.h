@@ -59,9 +59,9 @@ class PredictorCorrector {
   double longest_step(const MmaVariables& at) const;
 
   int n_, m_;
-  Eigen::ArrayXd to_upp_, to_low_, room_alpha_, room_beta_;  // 1/(U-x), 1/(x-L), x-α, β-x
-  Eigen::ArrayXd plam_, qlam_, up_, down_;                   // p0 + P λ, q0 + Q λ, work (n)
-  Eigen::ArrayXd root_, h_;                                  // D^-½, right-hand side in x (n)
+  Eigen::ArrayXd to_upp_, to_low_, gap_alpha_, gap_beta_;  // 1/(U-x), 1/(x-L), x-α, β-x
+  Eigen::ArrayXd plam_, qlam_, up_, down_;                 // p0 + P λ, q0 + Q λ, work (n)
+  Eigen::ArrayXd root_, h_;                                // D^-½, right-hand side in x (n)
   Eigen::ArrayXd in_x_, in_y_, in_g_;  // residuals of the conditions other than products
   double in_z_ = 0;
   Products lacking_;

@@ -5,7 +5,7 @@
 namespace flexmorph::optim {
 
 /// Values and gradients of the functions of a problem at one design.
-struct Response {
+struct ProblemValues {
   double f = 0;  ///< Objective.
   VectorXd df;   ///< Gradient of the objective (n).
   VectorXd g;    ///< Constraints g <= 0 (m).
@@ -18,10 +18,10 @@ struct Response {
 };
 
 /// Returns the objective that a design attains, whatever value its auxiliary variable has.
-double attained_objective(const Response& response);
+double attained_objective(const ProblemValues& response);
 /// Returns the largest violation of a constraint that limits the design, at least 0. Constraints
 /// that bound an auxiliary variable do not count.
-double design_violation(const Response& response);
+double design_violation(const ProblemValues& response);
 
 /// The problem: minimize f(x) subject to g(x) <= 0 and lower <= x <= upper.
 ///
@@ -45,7 +45,7 @@ class Problem {
   /// Computes f, g and their gradients together, because one state solve serves all of them.
   /// @param x  design (n)
   /// @throws Error (numerical) if the state at x cannot be solved.
-  virtual Response evaluate(const VectorXd& x) = 0;
+  virtual ProblemValues evaluate(const VectorXd& x) = 0;
 
   /// Returns true if the problem has curvature().
   virtual bool has_curvature() const { return false; }

@@ -5,7 +5,7 @@
 namespace flexmorph::optim {
 
 VectorXd restored(const Point& point, const VectorXd& lower, const VectorXd& upper, double limit) {
-  const Response& r = point.response;
+  const ProblemValues& r = point.response;
   const VectorXd down = (lower - point.x).cwiseMax(-limit);
   const VectorXd up = (upper - point.x).cwiseMin(limit);
   VectorXd d = VectorXd::Zero(point.x.size());

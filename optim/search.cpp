@@ -12,13 +12,13 @@
 namespace flexmorph::optim {
 namespace {
 
-constexpr int kRestingRows = 3;
+constexpr int kStagnatingRows = 3;
 
-bool finite(const Response& r) {
+bool finite(const ProblemValues& r) {
   return std::isfinite(r.f) && r.df.allFinite() && r.g.allFinite() && r.dg.allFinite();
 }
 
-std::string what_is_not_finite(const Response& r) {
+std::string what_is_not_finite(const ProblemValues& r) {
   if (!std::isfinite(r.f)) return "the objective is not finite";
   if (!r.df.allFinite()) return "the gradient of the objective is not finite";
   if (!r.g.allFinite()) return "a constraint is not finite";
@@ -27,15 +27,15 @@ std::string what_is_not_finite(const Response& r) {
 
 }  // namespace
 
-double violation(const Response& response) {
+double violation(const ProblemValues& response) {
   return response.g.size() == 0 ? 0 : std::max(0.0, response.g.maxCoeff());
 }
 
-double attained_objective(const Response& r) {
+double attained_objective(const ProblemValues& r) {
   return r.n_bounds == 0 ? r.f : r.f + r.g.segment(r.first_bound, r.n_bounds).maxCoeff();
 }
 
-double design_violation(const Response& r) {
+double design_violation(const ProblemValues& r) {
   double out = 0;
   for (Eigen::Index i = 0; i < r.g.size(); ++i)
     if (i < r.first_bound || i >= r.first_bound + r.n_bounds) out = std::max(out, r.g[i]);
@@ -59,14 +59,15 @@ Search::Search(Problem& problem, const Settings& settings, const Observer& obser
   const int n = problem.n_variables();
   if (n <= 0) throw Error::input("optimizer: the problem has no variables");
   if (lower_.size() != n || upper_.size() != n) {
-    throw Error::input("optimizer: bounds need one entry for each of the " + std::to_string(n) +
+    throw Error::input("optimizer: the bounds need one entry for each of the " + std::to_string(n) +
                        " variables");
   }
   for (int j = 0; j < n; ++j) {
     if (!std::isfinite(lower_[j]) || !std::isfinite(upper_[j]) || lower_[j] > upper_[j]) {
-      throw Error::input("optimizer: bounds of variable " + std::to_string(j) + " are " +
-                         std::to_string(lower_[j]) + " and " + std::to_string(upper_[j]) +
-                         "; they are finite and do not cross");
+      throw Error::input(
+          "optimizer: bounds of variable " + std::to_string(j) + " are " +
+          std::to_string(lower_[j]) + " and " + std::to_string(upper_[j]) +
+          "; they must be finite, and the lower one must not be above the upper one");
     }
   }
   mark_ = cpu_seconds();
@@ -74,7 +75,8 @@ Search::Search(Problem& problem, const Settings& settings, const Observer& obser
 
 Point Search::start() {
   Point point{problem_.start(), {}};
-  if (point.x.size() != n()) throw Error::input("optimizer: the start has the wrong length");
+  if (point.x.size() != n())
+    throw Error::input("optimizer: the start has a wrong number of variables");
   for (int j = 0; j < n(); ++j) {
     if (!(point.x[j] >= lower_[j] && point.x[j] <= upper_[j])) {
       throw Error::input("optimizer: variable " + std::to_string(j) + " starts at " +
@@ -88,7 +90,7 @@ Point Search::start() {
   return point;
 }
 
-Trial Search::evaluate(const VectorXd& x, Response& out) {
+Trial Search::evaluate(const VectorXd& x, ProblemValues& out) {
   const double begin = cpu_seconds();
   ++evaluations_;
   last_x_ = x;
@@ -110,7 +112,7 @@ Trial Search::evaluate(const VectorXd& x, Response& out) {
   }
   if (trial == Trial::taken && !acceptable && best_.acceptable) {
     trial = Trial::unacceptable;
-    refusal_ = "the design is not acceptable to the problem";
+    refusal_ = "the design does not meet the conditions of the problem";
   }
   if (trial == Trial::taken && better(out, acceptable)) {
     best_ = {{x, out}, acceptable};
@@ -121,26 +123,26 @@ Trial Search::evaluate(const VectorXd& x, Response& out) {
   return trial;
 }
 
-void Search::check(const Response& r) const {
+void Search::check(const ProblemValues& r) const {
   if (r.df.size() != n() || r.g.size() != m_ || r.dg.rows() != m_ ||
       (m_ > 0 && r.dg.cols() != n())) {
-    throw Error::input("optimizer: the response is not of " + std::to_string(n()) +
+    throw Error::input("optimizer: the response does not belong to " + std::to_string(n()) +
                        " variables and " + std::to_string(m_) + " constraints");
   }
 }
 
-bool Search::feasible(const Response& response) const {
+bool Search::feasible(const ProblemValues& response) const {
   return violation(response) <= settings_.feasibility;
 }
 
-bool Search::usable(const Response& response) const {
+bool Search::usable(const ProblemValues& response) const {
   return design_violation(response) <= settings_.feasibility;
 }
 
-bool Search::better(const Response& r, bool acceptable) const {
+bool Search::better(const ProblemValues& r, bool acceptable) const {
   if (best_.point.x.size() == 0) return true;
   if (acceptable != best_.acceptable) return acceptable;
-  const Response& b = best_.point.response;
+  const ProblemValues& b = best_.point.response;
   if (usable(r) != usable(b)) return usable(r);
   return usable(r) ? attained_objective(r) < attained_objective(b)
                    : design_violation(r) < design_violation(b);
@@ -161,7 +163,7 @@ bool Search::row(int iteration, const Point& point) {
   if (it.improved) best_is_new_ = false;
   const double now = cpu_seconds();
   it.seconds = std::max(0.0, now - mark_ - inside_problem_);
-  const bool go_on = !observe_ || observe_(it);
+  const bool keep_running = !observe_ || observe_(it);
   mark_ = cpu_seconds();
   inside_problem_ = 0;
 
@@ -173,18 +175,18 @@ bool Search::row(int iteration, const Point& point) {
   best_objectives_.push_back(found ? attained_objective(best_.point.response)
                                    : std::numeric_limits<double>::infinity());
   if (best_objectives_.size() > Verdict::kPlateauRows + 1) best_objectives_.pop_front();
-  if (go_on)
-    end_or_go_on(it, point, kkt.lambda.sum());
+  if (keep_running)
+    end_or_continue(it, point, kkt.lambda.sum());
   else
-    stop(Stop::observer, "those who look on asked for it");
+    stop(Stop::observer, "the calling program ended the optimization");
   stop_when_spent();
   return !stopped_;
 }
 
 /// Stops the search if the present row meets one of the criteria to stop.
 /// @param price  sum of the multipliers at this row
-void Search::end_or_go_on(const Iterate& it, const Point& point, double price) {
-  const Rest& rest = settings_.rest;
+void Search::end_or_continue(const Iterate& it, const Point& point, double price) {
+  const StoppingWindow& rest = settings_.rest;
   const bool met = it.violation <= settings_.feasibility;
   const std::string residual = "; KKT residual " + scientific(it.kkt);
   const double change = recent_change();
@@ -201,16 +203,16 @@ void Search::end_or_go_on(const Iterate& it, const Point& point, double price) {
                               std::to_string(rest.rows) + " iterations" + residual);
     if (std::isfinite(rest.kkt)) keep_last(point, rest.objective);
   } else if (settings_.plateau && at_plateau()) {
-    stop(Stop::plateau, plateau_words() + residual);
-  } else if (rows_ > 1 && rests(it.change, it.violation)) {
-    stop(Stop::converged, "three iterations in a row changed no variable by " +
+    stop(Stop::plateau, plateau_text() + residual);
+  } else if (rows_ > 1 && stagnates(it.change, it.violation)) {
+    stop(Stop::converged, "in three iterations in a row no variable changed by more than " +
                               scientific(settings_.change_tolerance) + residual);
   } else if (it.iteration >= settings_.max_iterations) {
-    std::string why =
-        "limit of " + std::to_string(settings_.max_iterations) + " iterations reached" + residual;
+    std::string why = "the limit of " + std::to_string(settings_.max_iterations) +
+                      " iterations is reached" + residual;
     if (std::isfinite(change))
-      why += ", change of the objective over the last " + std::to_string(rest.rows) + " " +
-             scientific(change);
+      why += "; the objective changed by " + scientific(change) + " over the last " +
+             std::to_string(rest.rows) + " iterations";
     stop(Stop::iteration_limit, why);
   }
 }
@@ -237,13 +239,13 @@ bool Search::spent() const {
 void Search::stop_when_spent() {
   if (!spent()) return;
   stop(Stop::evaluation_limit,
-       "limit of " + std::to_string(settings_.max_evaluations) + " state solves reached");
+       "the limit of " + std::to_string(settings_.max_evaluations) + " state solves is reached");
 }
 
-bool Search::rests(double change, double violation) {
+bool Search::stagnates(double change, double violation) {
   const bool resting = change < settings_.change_tolerance && violation <= settings_.feasibility;
   resting_ = resting ? resting_ + 1 : 0;
-  return resting_ >= kRestingRows;
+  return resting_ >= kStagnatingRows;
 }
 
 void Search::stop(Stop stop, const std::string& message) {
@@ -264,8 +266,8 @@ double Search::improvement_over(int rows) const {
 }
 
 bool Search::at_plateau() const {
-  constexpr int kLate = 10;  // no plateau if the last 10 iterates are infeasible
-  return rows_ - last_usable_row_ < kLate &&
+  constexpr int kLateIterates = 10;  // no plateau if the last 10 iterates are infeasible
+  return rows_ - last_usable_row_ < kLateIterates &&
          improvement_over(Verdict::kPlateauRows) < Verdict::kPlateau;  // false for NaN
 }
 
@@ -284,7 +286,7 @@ Verdict Search::verdict_on(const Result& result) const {
 Result Search::result() {
   if (last_x_ != best_.point.x) {
     const Point kept = best_.point;
-    Response again;
+    ProblemValues again;
     // If the evaluation fails now although it succeeded before, the earlier response stays.
     if (evaluate(kept.x, again) == Trial::taken) best_.point = {kept.x, again};
   }

@@ -9,8 +9,8 @@ namespace flexmorph::optim {
 
 /// A design with the values and gradients of the problem there.
 struct Point {
-  VectorXd x;         ///< Design (n).
-  Response response;  ///< Values and gradients at x.
+  VectorXd x;              ///< Design (n).
+  ProblemValues response;  ///< Values and gradients at x.
 };
 
 /// Outcome of the evaluation of a trial design.
@@ -21,7 +21,7 @@ enum class Trial {
 };
 
 /// Returns the largest constraint value g, at least 0.
-double violation(const Response& response);
+double violation(const ProblemValues& response);
 /// Returns a number in scientific notation for messages, such as 1.2e-05.
 std::string scientific(double value);
 
@@ -55,7 +55,7 @@ class Search {
 
   /// Evaluates the problem once. Exceptions other than a numerical Error are passed on.
   /// @param out  the response, valid if the trial is `taken`
-  Trial evaluate(const VectorXd& x, Response& out);
+  Trial evaluate(const VectorXd& x, ProblemValues& out);
   /// Returns the number of evaluations so far.
   int evaluations() const { return evaluations_; }
   /// Returns true if the problem has second derivatives.
@@ -90,7 +90,7 @@ class Search {
   /// Returns the best design found so far.
   const Point& best() const { return best_.point; }
   /// Returns true if all constraints hold, including those that bound an auxiliary variable.
-  bool feasible(const Response& response) const;
+  bool feasible(const ProblemValues& response) const;
 
   /// Returns the result with the best design, at which the problem was evaluated last.
   Result result();
@@ -100,12 +100,12 @@ class Search {
     Point point;
     bool acceptable = false;
   };
-  bool usable(const Response& response) const;  // design_violation() is within the tolerance
-  bool better(const Response& response, bool acceptable) const;
-  void check(const Response& response) const;
-  bool rests(double change, double violation);
+  bool usable(const ProblemValues& response) const;  // design_violation() is within the tolerance
+  bool better(const ProblemValues& response, bool acceptable) const;
+  void check(const ProblemValues& response) const;
+  bool stagnates(double change, double violation);
   double recent_change() const;
-  void end_or_go_on(const Iterate& it, const Point& point, double price);
+  void end_or_continue(const Iterate& it, const Point& point, double price);
   void keep_last(const Point& point, double slack);
   double improvement_over(int rows) const;
   bool at_plateau() const;

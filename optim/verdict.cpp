@@ -16,7 +16,7 @@ std::string percent(double part) {
 
 }  // namespace
 
-std::string plateau_words() {
+std::string plateau_text() {
   return "the objective fell by less than " + percent(Verdict::kPlateau) + " over " +
          std::to_string(Verdict::kPlateauRows) + " iterations";
 }
@@ -35,23 +35,23 @@ std::string to_string(Verdict::Kind kind) {
   return "";
 }
 
-std::string words_of(const Verdict& verdict) {
+std::string text_of(const Verdict& verdict) {
   const std::string residual = "KKT residual " + scientific(verdict.kkt);
   std::string out = to_string(verdict.kind);
   switch (verdict.kind) {
     case Verdict::Kind::evaluated:
-      return out + ": nothing was optimized, " + residual;
+      return out + ": the design was not optimized, " + residual;
     case Verdict::Kind::converged:
       return out + ": " + residual;
     case Verdict::Kind::stagnated:
-      return out + ": " + plateau_words() + ", " + residual;
+      return out + ": " + plateau_text() + ", " + residual;
     case Verdict::Kind::unfinished:
       break;
   }
   const std::string rows = std::to_string(Verdict::kImprovementRows) + " iterations";
   return out +
          (std::isnan(verdict.improvement)
-              ? ": fewer than " + rows + " with a usable design, "
+              ? ": fewer than " + rows + " have a usable design, "
               : ": the objective fell by " + percent(verdict.improvement) + " over the last " +
                     rows + ", ") +
          residual;

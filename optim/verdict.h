@@ -30,11 +30,11 @@ struct Verdict {
 };
 
 /// Returns the text "the objective fell by less than 0.1 % over 30 iterations".
-std::string plateau_words();
+std::string plateau_text();
 /// Returns "converged", "stagnated", "unfinished" or "evaluated".
 std::string to_string(Verdict::Kind kind);
 /// Returns the kind of a verdict with the numbers behind it as a text, for example: "unfinished:
 /// the objective fell by 2.1 % over the last 20 iterations, KKT residual 4.0e-02".
-std::string words_of(const Verdict& verdict);
+std::string text_of(const Verdict& verdict);
 
 }  // namespace flexmorph::optim

@@ -1,12 +1,13 @@
 #!/bin/sh
 # tests/bare_root.sh [bookworm | trixie] [--first-steps]
-# Runs both commands of README.md in a bare root folder of Debian: debootstrap makes one in a temporary
-# folder ($TMPDIR, or /tmp) from the mirror that this machine's apt uses, the committed state of this
-# tree is cloned into it, and cases/run.sh and tests/run.sh run there. --first-steps stops when the
-# packages of both commands are installed and CMake has configured.
+# Runs both commands of README.md in a bare root folder of Debian: debootstrap creates it in a
+# temporary folder ($TMPDIR, or /tmp) from the mirror that this machine's apt uses, the committed
+# state of this tree is cloned into it, and cases/run.sh and tests/run.sh run there. --first-steps
+# stops when the packages of both commands are installed and CMake has configured.
 #
-# It needs root, debootstrap, git and 12 GB of disk; without one of the first three it says so and ends
-# with exit code 77. Processes and mounts live in namespaces of their own and end with this command.
+# It needs root, debootstrap, git and 12 GB of disk. If one of the first three is missing, it prints
+# so and ends with exit code 77. Processes and mounts are in separate namespaces and end with this
+# command.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 
@@ -19,7 +20,7 @@ mirror() {
     sed -nE 's/^(URIs:|deb( +\[[^]]*\])?) +([^ ]*\/debian)\/?( .*)?$/\3/p' | sed -n 1p
 }
 
-# in_root COMMAND : runs a line of shell in the clone, with nothing of this machine's environment.
+# in_root COMMAND : runs a line of shell in the clone, without the environment of this machine.
 in_root() {
   env -i HOME=/root TERM=dumb PATH=/usr/sbin:/usr/bin:/sbin:/bin chroot "$bare" \
     sh -euc "cd ~/flexmorph && $1" </dev/null
@@ -38,7 +39,7 @@ fill() {
   mount --rbind /dev "$bare/dev"
   git -c safe.directory='*' clone -q --no-hardlinks "$root" "$bare/root/flexmorph"
   if [ "$3" = first ]; then
-    # `root` is what cases/run.sh and tests/run.sh set before they read setup.sh.
+    # `root` is set by cases/run.sh and tests/run.sh before they read setup.sh.
     in_root 'root=$PWD && . cases/cmake/setup.sh && with_tests=1 && check_disk 4 && install_packages &&
              cmake -S . -B build -G Ninja -DFLEXMORPH_TESTS=ON'
   else
@@ -75,7 +76,8 @@ from=$(mirror)
 [ -n "$from" ] || stop "no mirror of Debian was found in /etc/apt"
 folder=$(mktemp -d "${TMPDIR:-/tmp}/flexmorph_root_XXXXXX")
 inner=
-# Mounts lie in the namespace of the inner process: when it has ended, the folder holds files only.
+# The mounts are in the namespace of the inner process; after its end the folder contains files
+# only.
 finish() {
   trap - EXIT INT TERM HUP
   if [ -n "$inner" ]; then kill -s KILL "$inner" 2>/dev/null && wait "$inner" || true; fi

@@ -1,15 +1,17 @@
 #!/bin/sh
 # tests/every_processor.sh [--builds LIST] [--kernels LIST] [--disturbances N] [--all]
-# Runs the tests with the last digits of other processors: builds (release, uncontracted) times kernels
-# of OpenBLAS, each with the vectors of its processors (geometry/vector_level.h), then the first build
-# with tests that integrate or optimize from starts disturbed by 1e-13 (five unless given;
-# tests/support/disturbance.h). Without --builds and --kernels: release with Haswell, Zen, SkylakeX,
-# Sandybridge and Prescott. --all adds the benchmarks: shipped cases with [expect].
+# Runs the tests with the round-off of other processors: builds (release, uncontracted) times
+# kernels of OpenBLAS, each with the vector registers of its processors (geometry/vector_level.h);
+# then the first build with tests that integrate or optimize from starts disturbed by 1e-13 (five
+# disturbances unless given; tests/support/disturbance.h). Without --builds and --kernels: release
+# with Haswell, Zen, SkylakeX, Sandybridge and Prescott. --all adds the benchmarks: shipped cases
+# with [expect].
 #
-# A row per run goes to the screen and into every_processor.md in the folder of the builds: verdicts,
-# and which numbers that tests print moved from those of the first run. A kernel whose instructions
-# the processor lacks is named and skipped. On two cores a build takes about fourteen minutes, a run
-# of the tests about four. The last line says `N passed, N failed`, of runs.
+# A row per run is printed and written to every_processor.md in the folder of the builds: verdicts,
+# and how many numbers printed by tests differ from those of the first run. A kernel whose
+# instructions the processor lacks is named and skipped. On two cores a build takes about fourteen
+# minutes, a run of the tests about four. The last line says `N passed, N failed`, the numbers of
+# runs.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/cases/cmake/setup.sh"
@@ -39,7 +41,7 @@ failed=0
 first=
 trap 'echo "$passed passed, $failed failed"' EXIT
 
-# runs_here KERNEL : does this processor know its instructions?
+# runs_here KERNEL : tests whether this processor has the instructions of the kernel.
 runs_here() {
   case "$1" in
     SkylakeX | Cooperlake | SapphireRapids) word=avx512vl ;;
@@ -50,7 +52,7 @@ runs_here() {
   grep -m 1 '^flags' /proc/cpuinfo | grep -qw "$word"
 }
 
-# vectors_of KERNEL : the vectors of processors that get these kernels.
+# vectors_of KERNEL : prints the vector level of the processors that use these kernels.
 vectors_of() {
   case "$1" in
     SkylakeX | Cooperlake | SapphireRapids) echo v4 ;;
@@ -59,7 +61,7 @@ vectors_of() {
   esac
 }
 
-# The build `release` is that of tests/run.sh.
+# The build `release` is the build folder of tests/run.sh.
 folder_of() {
   if [ "$1" = release ]; then echo "$build"; else echo "$folder/$1"; fi
 }
@@ -71,8 +73,8 @@ options() {
   esac
 }
 
-# moved FIRST OTHER : numbers that two logs have at the same places of the same tests, and that differ
-# by more than 1e-6 of themselves. Times are left out, and what is below 1e-9: round-off.
+# moved FIRST OTHER : counts numbers at equal positions of equal tests in two logs that differ by
+# more than 1e-6 of their value. Run times are left out, and values below 1e-9, which are round-off.
 moved() {
   awk '
     function numbers(line, list,    n) {
@@ -118,7 +120,8 @@ moved() {
     }' "$1" "$2"
 }
 
-# programs BUILD : those of tests, large ones first. Of disturbed starts only those that know them.
+# programs BUILD : prints the test programs, large ones first; for disturbed starts only those that
+# use them.
 programs() {
   find "$(folder_of "$1")/tests" -type f -perm -u+x \
     \( -name '*_test' -o -name '*_tests' -o -name '*_convergence' \) -printf '%s %p\n' |
@@ -131,8 +134,8 @@ programs() {
     done
 }
 
-# run NAME BUILD : one row of the table. Programs of tests run whole: starting each of 1700 tests by
-# itself takes as long as the tests.
+# run NAME BUILD : makes one row of the table. Test programs run as a whole, because starting each
+# of 1700 tests separately takes as long as the tests.
 run() {
   log="$folder/$1.log"
   rm -rf "$folder/$1" && mkdir "$folder/$1"

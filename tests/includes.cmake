@@ -1,15 +1,15 @@
-# Shows that floors and shelves hold: every #include of the sources points where the tables below
-# allow, every included file of ours exists, and the headers of wrapped libraries stay in the .cpp
-# files of their folder. Offences are named with file and line.
+# Shows that the layers of the folders are kept: every #include of the sources is allowed by the
+# tables below, every included file of this project exists, and headers of wrapped libraries are
+# included only in the .cpp files of their folder. Violations are named with file and line.
 #
 #   cmake -P tests/includes.cmake
 
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-# Room -> the rooms it may include besides itself. `fem` stands for the interfaces, the files
-# directly in fem/, and for fem/shapes.
-set(fem fem fem/model fem/elements fem/terms fem/joints fem/links fem/solve fem/triangles
+# Folder -> the folders that it may include besides itself. `fem` means the interfaces, which are
+# the files directly in fem/, and fem/shapes.
+set(fem fem fem/model fem/elements fem/terms fem/joints fem/force_elements fem/solve fem/triangles
         fem/dynamics fem/thermal)
 set(may_geometry "")
 set(may_io geometry)
@@ -18,7 +18,7 @@ set(may_fem/model geometry fem)
 set(may_fem/elements geometry fem)
 set(may_fem/terms geometry fem)
 set(may_fem/joints geometry fem)
-set(may_fem/links geometry fem)
+set(may_fem/force_elements geometry fem)
 set(may_fem/solve geometry fem fem/model)
 set(may_fem/triangles geometry fem fem/solve)
 set(may_fem/thermal geometry fem fem/model)
@@ -26,12 +26,12 @@ set(may_fem/dynamics geometry fem fem/model fem/solve)
 set(may_optim geometry)
 set(may_optim/verification geometry ${fem})
 set(may_optim/mmc geometry ${fem} optim optim/verification)
-# The door, main.cpp, and its wings, each on top of those before it.
+# The subfolders of cases, each depending only on those before it; main.cpp depends on all of them.
 set(below geometry io ${fem} optim optim/verification optim/mmc)
 set(may_cases/process geometry)
-foreach(wing scene keys assembly results output check run study)
-  set(may_cases/${wing} ${below})
-  list(APPEND below cases/${wing})
+foreach(module scene keys assembly results output check run study)
+  set(may_cases/${module} ${below})
+  list(APPEND below cases/${module})
 endforeach()
 set(may_cases/accuracy ${below})
 set(may_cases/stability ${below})
@@ -63,7 +63,7 @@ set(folder_CLI11 cases)
 set(folder_SUNDIALS tests)
 set(folder_valijson tests)
 
-# The room a file lies in.
+# Returns the module to which a file belongs.
 function(room_of path room)
   if(path MATCHES "^fem/shapes/")
     set(${room} fem PARENT_SCOPE)
@@ -76,7 +76,7 @@ function(room_of path room)
   endif()
 endfunction()
 
-# What is wrong when `file` includes the file `included` of ours, by the table; empty if nothing is.
+# Returns why `file` may not include the file `included` of this project; empty if it may.
 function(judge_room file included offence)
   room_of(${file} from)
   room_of(${included} to)
@@ -87,7 +87,7 @@ function(judge_room file included offence)
   endif()
 endfunction()
 
-# What is wrong when `file` includes `header` of a library; empty if nothing is.
+# Returns why `file` may not include `header` of a library; empty if it may.
 function(judge_library file header offence)
   set(${offence} "" PARENT_SCOPE)
   foreach(library ${libraries})
@@ -98,7 +98,7 @@ function(judge_library file header offence)
   endforeach()
 endfunction()
 
-# The tables must be able to refuse: known offences first, then known good ones.
+# The tables must be able to refuse: known violations are tested first, then known valid includes.
 foreach(pair geometry/grid.h>io/vtk.h io/vtk.cpp>fem/model/model.h fem/element.h>fem/model/model.h
              fem/terms/inertia.cpp>fem/elements/ale_ancf_plate.h fem/model/model.cpp>fem/terms/terms.h
              fem/solve/newton.cpp>fem/dynamics/esl.h optim/mma.cpp>optim/mmc/problem/design.h
@@ -154,7 +154,7 @@ foreach(folder geometry io fem optim cases tests)
       else()
         judge_room(${file} ${included} offence)
       endif()
-      # What is installed stands on what is installed.
+      # Installed headers may include installed headers only.
       if(NOT quote STREQUAL "<" AND NOT offence AND NOT included IN_LIST public_headers
          AND (file IN_LIST public_headers OR file MATCHES "^cases/examples/"))
         set(offence "it is not in cases/cmake/public_headers.txt")

@@ -1,31 +1,31 @@
-# Shows that every reference leads to something in the repository: links of Markdown files and their
-# anchors; files, folders and headings that Markdown and comments name; letters, names and years of
-# sources, which the bibliography lists. Offences are named with file and line.
+# Shows that every reference points to something in the repository: links of Markdown files and
+# their anchors; files, folders and headings named in Markdown and comments; sources cited by letter
+# or by author and year, which the bibliography lists. Violations are named with file and line.
 #
 #   cmake -P tests/references.cmake
 
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-# What is read: Markdown as a whole, of the others the comments.
+# Markdown files are read as a whole; of other files only the comments are read.
 set(folders geometry io fem optim cases tests)
 set(endings h cpp cmake txt sh toml py)
 set(bibliography_file fem/README.md)
-# Headers of libraries that comments speak of, and what a run writes.
+# Headers of libraries that comments mention, and a file that runs write.
 set(foreign cblas.h Time_stamper.h paraview.py)
 set(months January February March April May June July August September October November December)
 
-# What documents that are not here are called; folders that words may begin with; how equations,
-# sections and figures of a source are cited; how an author and a year are.
+# Patterns: documents that are not in the repository; folders with which a path may begin; citations
+# of equations, sections and figures of a source; citations of an author and a year.
 set(outsiders "design\\.md|[^a-z]research/[a-z_]+|[^a-z]seeds/|[Ii]ssue (line )?[0-9]+")
 string(APPEND outsiders "|[Ll]ines? [0-9]+ (and [0-9]+ )?of the issue|\\(line [0-9]+\\)")
 set(rooms "geometry|io|fem|optim|cases|tests")
-string(APPEND rooms "|elements|terms|joints|links|solve|dynamics|thermal|mmc")
+string(APPEND rooms "|elements|terms|joints|force_elements|solve|dynamics|thermal|mmc")
 set(cited "[ (`*][A-Z] (\\((A\\.)?[0-9]+\\)|[0-9]+\\.[0-9]+[ :;,.)]|Figs?\\. [0-9])")
 string(APPEND cited "|[ (`*][A-Z],? section [0-9]")
 set(dated "[^ (`]+( et al\\.)?,? \\(?(18|19|20)[0-9][0-9][^0-9A-Za-z.-]")
 
-# Text without what takes lists apart; the arrow stands where Markdown begins the target of a link.
+# Returns the text without characters that split lists; `@to(` marks the target of a Markdown link.
 function(flatten text flat)
   string(REPLACE "[](" "(" text "${text}")  # a lambda of C++: links have words
   string(REPLACE "](" " @to(" text "${text}")
@@ -33,7 +33,7 @@ function(flatten text flat)
   set(${flat} "${text}" PARENT_SCOPE)
 endfunction()
 
-# What a file says in words, in one line: comments, or all of it.
+# Returns the prose of a file in one line: its comments, or the whole text of Markdown.
 function(words_of file text words)
   flatten("${text}" text)
   if(file MATCHES "\\.(h|cpp)$")
@@ -47,7 +47,8 @@ function(words_of file text words)
   set(${words} " ${text} " PARENT_SCOPE)
 endfunction()
 
-# The anchors of a Markdown text, and its headings: lines that begin with # outside of code.
+# Returns the headings of a Markdown text (lines that begin with # outside of code) and their
+# anchors.
 function(headings_of text headings anchors)
   flatten("${text}" text)
   string(REPLACE "\n" ";" lines "${text}")
@@ -73,7 +74,7 @@ function(headings_of text headings anchors)
   set(${anchors} "${slugs}" PARENT_SCOPE)
 endfunction()
 
-# Entries of a bibliography, one line each.
+# Returns the entries of a bibliography, one per line.
 function(entries_of text entries)
   flatten("${text}" text)
   string(REGEX REPLACE "^.*\n## Bibliography\n" "\n" text "${text}")
@@ -82,8 +83,9 @@ function(entries_of text entries)
   set(${entries} "${text}" PARENT_SCOPE)
 endfunction()
 
-# What is wrong with a link of a Markdown file, a path with or without anchor; empty if nothing is.
-function(judge_link file target offence)
+# Returns the error of a link of a Markdown file (a path with or without anchor); empty if there is
+# none.
+function(check_link file target offence)
   set(${offence} "" PARENT_SCOPE)
   if(target MATCHES "^(https?|mailto):")
     return()
@@ -114,9 +116,10 @@ function(judge_link file target offence)
   endif()
 endfunction()
 
-# What is wrong with a word that may name a file or a folder of ours: said from the top of the tree,
-# or from any folder above the file that says it. Names of runs, builds and examples are nobody's.
-function(judge_path file word offence)
+# Returns the error of a word that may name a file or folder of this project, relative to the top of
+# the tree or to any folder above the file that contains it. Names of runs, builds and examples are
+# ignored.
+function(check_path file word offence)
   set(${offence} "" PARENT_SCOPE)
   string(REGEX REPLACE "[./]+$" "" word "${word}")
   if(word MATCHES "^(build|runs|/)|[*{}]" OR word MATCHES "://"
@@ -130,7 +133,8 @@ function(judge_path file word offence)
     return()
   endif()
   if(NOT word MATCHES "/")
-    # A name alone is that of any file; texts without a folder are those of runs and readers.
+    # A name without a folder may be that of any file; texts without a folder belong to runs and
+    # readers.
     if(word MATCHES "\\.(toml|txt|md)$" OR word IN_LIST names OR word IN_LIST foreign)
       return()
     endif()
@@ -149,21 +153,21 @@ function(judge_path file word offence)
     endif()
     cmake_path(GET folder PARENT_PATH folder)
   endwhile()
-  # Programs that are built beside their sources.
+  # Programs that are built next to their sources.
   if(word MATCHES "^cases/flexmorph$" OR word MATCHES "^tests/benchmark/[a-z_]+$")
     return()
   endif()
   set(${offence} "no such file" PARENT_SCOPE)
 endfunction()
 
-# What is wrong with a heading that follows the name of a README: `fem/README.md, Heat`.
-function(judge_heading mention offence)
+# Returns the error of a heading that follows the name of a README: `fem/README.md, Heat`.
+function(check_heading mention offence)
   set(${offence} "" PARENT_SCOPE)
   string(REGEX MATCH "^(.*README\\.md), (.*)$" all "${mention}")
   set(file "${CMAKE_MATCH_1}")
   set(said "${CMAKE_MATCH_2}")
   if(NOT EXISTS "${root}/${file}")
-    return()  # the path is judged by itself
+    return()  # the path is checked by itself
   endif()
   file(READ "${root}/${file}" text)
   headings_of("${text}" headings anchors)
@@ -176,8 +180,8 @@ function(judge_heading mention offence)
   set(${offence} "no such heading" PARENT_SCOPE)
 endfunction()
 
-# What is wrong with the letter of a source, as in `P (12)`.
-function(judge_letter letter offence)
+# Returns the error of the letter of a source, as in `P (12)`.
+function(check_letter letter offence)
   set(${offence} "" PARENT_SCOPE)
   foreach(entry IN LISTS entries)
     if(entry MATCHES "^\\*\\*${letter}\\*\\* ")
@@ -187,8 +191,8 @@ function(judge_letter letter offence)
   set(${offence} "the bibliography has no source ${letter}" PARENT_SCOPE)
 endfunction()
 
-# What is wrong with an author (the last one named) and a year.
-function(judge_source author year offence)
+# Returns the error of an author (the last one named) and a year.
+function(check_source author year offence)
   set(${offence} "" PARENT_SCOPE)
   if(author IN_LIST months OR NOT author MATCHES "^[A-Z][^A-Z0-9]|^Mc[A-Z]")
     return()
@@ -203,8 +207,8 @@ function(judge_source author year offence)
   set(${offence} "the bibliography has no ${author} ${year}" PARENT_SCOPE)
 endfunction()
 
-# All mentions in the words of a file that are wrong, as pairs: the mention, what is wrong.
-function(judge_words file words offences)
+# Returns all wrong references in the prose of a file, as pairs of reference and error.
+function(check_words file words offences)
   set(found "")
   string(REGEX MATCHALL "${outsiders}" outside "${words}")
   foreach(mention IN LISTS outside)
@@ -219,7 +223,7 @@ function(judge_words file words offences)
     if(token STREQUAL "design.md")
       continue()
     endif()
-    judge_path("${file}" "${token}" offence)
+    check_path("${file}" "${token}" offence)
     if(offence)
       list(APPEND found "${token}" "${offence}")
     endif()
@@ -227,7 +231,7 @@ function(judge_words file words offences)
 
   string(REGEX MATCHALL "[a-z][a-z/]*/README\\.md, [A-Z][^.;:()]*" mentions "${words}")
   foreach(mention IN LISTS mentions)
-    judge_heading("${mention}" offence)
+    check_heading("${mention}" offence)
     if(offence)
       list(APPEND found "${mention}" "${offence}")
     endif()
@@ -236,7 +240,7 @@ function(judge_words file words offences)
   string(REGEX MATCHALL "${cited}" mentions "${words}")
   foreach(mention IN LISTS mentions)
     string(SUBSTRING "${mention}" 1 1 letter)
-    judge_letter(${letter} offence)
+    check_letter(${letter} offence)
     if(offence)
       list(APPEND found "${mention}" "${offence}")
     endif()
@@ -245,7 +249,7 @@ function(judge_words file words offences)
   string(REGEX MATCHALL "${dated}" mentions "${words}")
   foreach(mention IN LISTS mentions)
     string(REGEX MATCH "^([^ ,]+)( et al\\.)?,? \\(?([0-9]+)" all "${mention}")
-    judge_source("${CMAKE_MATCH_1}" ${CMAKE_MATCH_3} offence)
+    check_source("${CMAKE_MATCH_1}" ${CMAKE_MATCH_3} offence)
     if(offence)
       list(APPEND found "${mention}" "${offence}")
     endif()
@@ -253,7 +257,7 @@ function(judge_words file words offences)
   set(${offences} "${found}" PARENT_SCOPE)
 endfunction()
 
-# All files, and their names.
+# All files and their names.
 set(files "")
 foreach(folder IN LISTS folders)
   foreach(ending md ${endings})
@@ -271,7 +275,7 @@ endforeach()
 file(READ ${root}/${bibliography_file} text)
 entries_of("${text}" entries)
 
-# The judges must be able to refuse: known offences first, then known good ones.
+# The checks must be able to refuse: known errors are tested first, then known correct references.
 set(said_before "${entries}")
 set(entries "**P** Sun (2018)" "Svanberg (1987)" "Arnold, Brüls (2007)")
 foreach(words "see design.md section 4" "(issue line 6)" "Line 10 of the issue"
@@ -279,31 +283,31 @@ foreach(words "see design.md section 4" "(issue line 6)" "Line 10 of the issue"
               "fem/dynamics/remesh.h" "see nowhere_at_all.h" "cases/no_such_case.toml"
               "fem/README.md, No such heading" "as Q (12) says" "by Q 4.2 and" "of Q Fig. 3"
               "Svanberg (2002), SIAM" "Nobody et al. 1999,")
-  judge_words(fem/model/model.h " ${words} " offences)
+  check_words(fem/model/model.h " ${words} " offences)
   if(NOT offences)
-    message(FATAL_ERROR "the judges allow: ${words}")
+    message(FATAL_ERROR "the checks allow: ${words}")
   endif()
 endforeach()
-foreach(words "fem/model/model.h, dynamics/mesh_changes/growth.h" "model.h" "cases/run.sh" "build/cases/flexmorph"
+foreach(words "fem/model/model.h, dynamics/mesh_changes/moving_root.h" "model.h" "cases/run.sh" "build/cases/flexmorph"
               "my.toml" "body.heat.rise" "fem/README.md, Bibliography"
               "P (12), P 4.2 and P Figs. 3, 4" "Svanberg (1987), IJNME" "Brüls (2007)."
               "in 2000 steps" "November 2026," "A b 1.5e6 c")
-  judge_words(fem/terms/inertia.cpp " ${words} " offences)
+  check_words(fem/terms/inertia.cpp " ${words} " offences)
   if(offences)
-    message(FATAL_ERROR "the judges refuse: ${words}: ${offences}")
+    message(FATAL_ERROR "the checks refuse: ${words}: ${offences}")
   endif()
 endforeach()
 set(entries "${said_before}")
 foreach(target no_such_file.md "README.md#no-such-heading" ../../outside.md)
-  judge_link(fem/README.md ${target} offence)
+  check_link(fem/README.md ${target} offence)
   if(NOT offence)
-    message(FATAL_ERROR "the judge of links allows: ${target}")
+    message(FATAL_ERROR "the check of links allows: ${target}")
   endif()
 endforeach()
 foreach(target ../cases "#bibliography" "README.md#bibliography" https://example.org)
-  judge_link(fem/README.md "${target}" offence)
+  check_link(fem/README.md "${target}" offence)
   if(offence)
-    message(FATAL_ERROR "the judge of links refuses: ${target}: ${offence}")
+    message(FATAL_ERROR "the check of links refuses: ${target}: ${offence}")
   endif()
 endforeach()
 
@@ -312,13 +316,13 @@ set(n_links 0)
 foreach(file IN LISTS files)
   file(READ ${root}/${file} text)
   words_of(${file} "${text}" words)
-  judge_words(${file} "${words}" offences)
+  check_words(${file} "${words}" offences)
   if(file MATCHES "\\.md$")
     flatten("${text}" flat)
     string(REGEX MATCHALL "@to\\([^() \n]+|(src|href)=\"[^\"\n]+" links "${flat}")
     foreach(link IN LISTS links)
       string(REGEX REPLACE "^(@to\\(|src=\"|href=\")" "" target "${link}")
-      judge_link(${file} "${target}" offence)
+      check_link(${file} "${target}" offence)
       if(offence)
         list(APPEND offences "${target}" "${offence}")
       endif()
@@ -328,7 +332,7 @@ foreach(file IN LISTS files)
   while(offences)
     list(POP_FRONT offences mention offence)
     string(REGEX REPLACE "^[ (`*]+| +$" "" mention "${mention}")
-    # The line of the first word; mentions may go on in the next one.
+    # Position of the first word; a reference may continue in the next line.
     string(REGEX MATCH "^[^ ]*" first "${mention}")
     string(FIND "${text}" "${mention}" position)
     if(position EQUAL -1)

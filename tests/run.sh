@@ -28,8 +28,8 @@ case "${1-}" in
 esac
 excluded='benchmark|service|long'
 [ "$mode" != all ] || excluded=
-chosen=  # labels that -L names; tests that it names run whatever their labels are
-others=  # labels that -LE names
+chosen=  # labels named by -L; their tests run whatever other labels they have
+others=  # labels named by -LE
 n=$#
 while [ "$n" -gt 0 ]; do
   option=$1
@@ -52,7 +52,7 @@ while [ "$n" -gt 0 ]; do
   esac
 done
 if [ -n "$chosen" ]; then excluded= && set -- "$@" -L "$chosen"; fi
-# ctest would take only what has both labels if it got -L twice, and leave out only that with -LE.
+# If given several times, -L would select and -LE would exclude only tests that have all labels.
 excluded="$excluded${excluded:+${others:+|}}$others"
 [ -z "$excluded" ] || set -- "$@" -LE "$excluded"
 
@@ -64,7 +64,7 @@ case "$mode" in
   gate) limit=45 build="$root/build-gate" && rm -rf "$build" ;;
   all)
     limit=100 targets='all benchmarks'
-    # Tests in bare root folders (tests/bare_root.sh) build everything twice more.
+    # Tests in bare root folders (tests/bare_root.sh) build everything two more times.
     if [ "$(id -u)" = 0 ] && command -v debootstrap >/dev/null; then limit=220; fi
     ;;
 esac
@@ -80,7 +80,7 @@ left() {
 }
 
 passed=0
-failed=1 # what has not run has failed
+failed=1 # tests that have not run count as failed
 skipped=0
 runner=
 finish() {
@@ -146,8 +146,8 @@ if [ "$mode" = gate ] && grep -n 'warning:' "$build/build.log"; then
   exit 1
 fi
 
-# Tests run beside each other, each with one thread (tests/support/test_main.cpp). Colours would
-# hide the words that are counted below.
+# Tests run in parallel, each with one thread (tests/support/test_main.cpp). Colours would disturb
+# the counting of results below.
 export CLICOLOR_FORCE=0
 wanted=$(ctest --test-dir "$build" -N "$@" | sed -n 's/^Total Tests: //p')
 code=0
@@ -166,7 +166,8 @@ if [ "$code" -ge 124 ]; then
        END { for (n in name) print "  " name[n] }' "$build/tests.log"
 fi
 
-# skip_is_listed TEST : does tests/skips.txt allow that this test is skipped on this machine?
+# skip_is_listed TEST : prints the reason if tests/skips.txt allows that this test is skipped on
+# this machine.
 skip_is_listed() {
   sed -e 's/#.*//' -e '/^ *$/d' "$root/tests/skips.txt" | while read -r pattern condition reason; do
     echo "$1" | grep -qxE "$pattern" || continue

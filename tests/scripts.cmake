@@ -1,11 +1,12 @@
-# cases/run.sh and tests/run.sh read their arguments before they install or build anything,
-# cases/run.sh knows the options of `flexmorph run`, and both say before they begin what is missing:
+# Shows that cases/run.sh and tests/run.sh read their arguments before they install or build
+# anything, that cases/run.sh accepts the options of `flexmorph run`, and that both report missing
+# prerequisites before they begin:
 #   cmake -DPROGRAM=... -P scripts.cmake
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 
-# answers(<exit code> <words that the answer contains> <command>...): within a minute. Where it
-# does not, the folder ${work} of the tests below is removed.
+# answers(<exit code> <text that the output contains> <command>...): expects this within a minute;
+# otherwise the folder ${work} of the tests below is removed, and the test fails.
 function(answers expected words)
   execute_process(COMMAND ${ARGN} TIMEOUT 60 RESULT_VARIABLE code OUTPUT_VARIABLE out
                   ERROR_VARIABLE err)
@@ -41,9 +42,9 @@ foreach(option ${options})
   endif()
 endforeach()
 
-# A copy of what the scripts read, in a folder whose name has a space, and commands that stand for
-# those of the system: `dpkg-query` knows the packages that $INSTALLED says, `df` the free kB of $FREE,
-# `ctest` prints its arguments and one test that passes, and `cmake` does nothing.
+# A copy of the files that the scripts read, in a folder whose name has a space, and replacements of
+# system commands: `dpkg-query` reports packages as $INSTALLED says, `df` reports $FREE kB, `ctest`
+# prints its arguments and one passed test, and `cmake` does nothing.
 set(work "$ENV{TMPDIR}")
 if(NOT work)
   set(work /tmp)
@@ -79,7 +80,7 @@ answers(0 "20000 -R B -L unit|service -LE attack" ${ready} ${tests_run} -L unit 
 answers(1 "apt-get install --no-install-recommends g++ cmake" ${with} INSTALLED=no FREE=9000000
         ${cases_run} short_beam)
 answers(1 "nlohmann-json3-dev libgtest-dev" ${with} INSTALLED=no FREE=9000000 ${tests_run})
-file(REMOVE_RECURSE "${tree}/build")  # what is built already is not needed again
+file(REMOVE_RECURSE "${tree}/build")  # existing build output reduces the required space
 answers(1 "3 MB are free in ${tree}, and 4000 MB are needed" ${with} INSTALLED=all FREE=3000 ${tests_run})
 answers(1 "3 MB are free in ${tree}, and 2000 MB are needed" ${with} INSTALLED=all FREE=3000
         ${cases_run} short_beam)

@@ -72,7 +72,7 @@ class Measurement {
     for (auto& [part, run] : study_.own) {
       measure(part, to_string(part), run, 0);
       if (!run.measured())
-        throw Error::numerical("accuracy: the case itself failed: " + run.message);
+        throw Error::numerical("accuracy: the run of the unchanged case failed: " + run.message);
     }
     measure_levels();
     evaluate(study_);
@@ -92,8 +92,8 @@ class Measurement {
   void add_quantities() {
     if (!scene_.accuracy)
       throw Error::input(file_.path() +
-                         ": an [accuracy] with a `quantity` is missing (or --set "
-                         "'accuracy.quantity=\"...\"'); there are: " +
+                         ": the case needs an [accuracy] with a `quantity` (or --set "
+                         "'accuracy.quantity=\"...\"'); possible quantities: " +
                          all_candidates(prepared_));
     for (const Interest& interest : scene_.accuracy->quantities) {
       study_.interests.push_back(interest);
@@ -107,14 +107,14 @@ class Measurement {
   /// Returns the names of parameters from the options or, without them, from the case.
   /// @throws Error (input), with location, for an unknown name
   std::vector<std::string> wanted_names() const {
-    for (const std::string& name : options_.ladders) parameter(name);
-    if (!options_.ladders.empty()) return options_.ladders;
-    for (const std::string& name : scene_.accuracy->ladders) try {
+    for (const std::string& name : options_.refinements) parameter(name);
+    if (!options_.refinements.empty()) return options_.refinements;
+    for (const std::string& name : scene_.accuracy->refinements) try {
         parameter(name);
       } catch (const Error& error) {
-        throw Error::input(scene_.accuracy->place + ": accuracy.ladders: a " + error.what());
+        throw Error::input(scene_.accuracy->location + ": accuracy.refinements: " + error.what());
       }
-    return scene_.accuracy->ladders;
+    return scene_.accuracy->refinements;
   }
 
   /// Adds the series of the requested parameters for the subproblems of the quantities.
@@ -134,7 +134,7 @@ class Measurement {
       if (study_.series.size() == before) study_.absent.emplace_back(each.name, why);
     }
     if (study_.series.empty())
-      throw Error::input("accuracy: none of these ladders is one of this case: " +
+      throw Error::input("accuracy: no requested refinement applies to this case: " +
                          study_.absent.front().first + " (" + study_.absent.front().second + ")");
   }
 
@@ -160,7 +160,7 @@ class Measurement {
   /// Optimizes the case. All levels then analyse the optimized designs.
   void optimize() {
     const Variant one{
-        "optimized", {"output.vtk=false", "output.plots=false", "output.sharp_every=0", "verify="}};
+        "optimized", {"output.vtk=false", "output.plots=false", "output.crisp_every=0", "verify="}};
     const VariantResult result = result_of(one);
     if (!result.done())
       throw Error::numerical("accuracy: the optimization failed: " + result.message);
@@ -170,7 +170,7 @@ class Measurement {
       starts_.push_back("design." + std::to_string(i) + ".start='" + folder + "/" +
                         components_name(scene_, scene_.designs[i].body) + "'");
     if (!options_.study.quiet)
-      std::printf("optimized: %s CPU s\n", io::to_text(result.seconds_cpu, 3).c_str());
+      std::printf("optimization: %s CPU s\n", io::to_text(result.seconds_cpu, 3).c_str());
   }
 
   VariantResult result_of(const Variant& variant) const {
@@ -221,7 +221,7 @@ class Measurement {
       if (study_.parts[q] == part)
         run.values[q] = value_in(result.directory, study_.interests[q], part);
     if (options_.study.quiet) return;
-    std::printf("run %d, %s %s: %s, %s CPU s; at most %s left\n", ++n_runs_, name.c_str(),
+    std::printf("run %d, %s %s: %s, %s CPU s; remaining budget %s\n", ++n_runs_, name.c_str(),
                 run.level.name.c_str(), run.status.c_str(), io::to_text(run.seconds_cpu, 3).c_str(),
                 duration_text(left()).c_str());
     std::fflush(stdout);
@@ -280,8 +280,8 @@ class Measurement {
 
   void run_recommended(const std::string& name, Recommendation& r) {
     if (r.seconds > left()) {
-      r.sentence = "not verified: it would take about " + io::to_text(r.seconds, 2) +
-                   " s, the budget leaves " + io::to_text(left(), 2);
+      r.sentence = "not verified: the run would take about " + io::to_text(r.seconds, 2) +
+                   " s, the remaining budget is " + io::to_text(left(), 2) + " s";
       return;
     }
     std::vector<double> values(study_.interests.size());
@@ -292,8 +292,8 @@ class Measurement {
       measure(part, to_string(part) + "_" + name, run, std::max(1.0, left()));
       if (!run.measured()) {
         r.withdrawn = !run.message.starts_with(kEnded);
-        r.sentence = r.withdrawn ? "withdrawn: its run failed: " + run.message
-                                 : "not verified: its run was " + run.message;
+        r.sentence = r.withdrawn ? "withdrawn: the run with these settings failed: " + run.message
+                                 : "not verified: the run with these settings was " + run.message;
         return;
       }
       seconds += run.seconds_cpu;
@@ -319,7 +319,8 @@ class Measurement {
       read_scene(changed);
     } catch (const Error& error) {
       r.withdrawn = true;
-      r.sentence = std::string("withdrawn: the whole case refuses it: ") + error.what();
+      r.sentence = std::string("withdrawn: the complete case is invalid with these settings: ") +
+                   error.what();
       return;
     }
     r.file = file;
@@ -349,7 +350,7 @@ double read_budget(const std::string& text) {
                         : unit == "h"               ? 3600
                                                     : 0;
   if (error != std::errc() || factor == 0 || !(number > 0) || !std::isfinite(number))
-    throw Error::input("--budget " + text + ": a time such as 120s, 2min or 1h is wanted");
+    throw Error::input("--budget " + text + ": the budget is a time such as 120s, 2min or 1h");
   return number * factor;
 }
 

@@ -10,7 +10,7 @@ struct AccuracyOptions {
   std::string budget = "120s";  ///< CPU time of all runs, see read_budget().
 
   /// Names of discretization parameters; empty means the parameters that the case names, or all.
-  std::vector<std::string> ladders;
+  std::vector<std::string> refinements;
 
   bool verify = true;  ///< True if recommended settings are verified by runs within the budget.
 };

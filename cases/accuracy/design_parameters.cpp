@@ -15,8 +15,8 @@ using Overrides = std::vector<std::string>;
 using Levels = std::vector<Level>;
 
 std::string no_loads(const Scene& scene, Part part) {
-  if (part == Part::motion) return "of designs only";
-  return scene.esl && !scene.domain ? "" : "loads are given, not those of a motion";
+  if (part == Part::motion) return "this series is for designs only";
+  return scene.esl && !scene.domain ? "" : "the loads are given and do not come from a motion";
 }
 
 /// Returns levels with a whole number of load times up to the end of the motion. With other numbers
@@ -33,11 +33,11 @@ Levels load_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::optional<Theory> load_theory(const Scene&, Part, const std::string&) {
-  return Theory{1, "many loads, whose sum is a one-sided rectangle rule"};
+  return Theory{1, "many loads, because their sum is a one-sided rectangle rule"};
 }
 
 std::string no_design(const Scene&, Part part) {
-  return part == Part::design ? "" : "of designs only";
+  return part == Part::design ? "" : "this series is for designs only";
 }
 
 std::string design_key(size_t design, const std::string& rest) {
@@ -97,7 +97,8 @@ Levels cell_levels(const Scene& scene, const io::CaseFile& file) {
 
 std::string no_band(const Scene& scene, Part part) {
   for (const BodyDesign& d : scene.designs)
-    if (d.tdf.kind == TdfSettings::Kind::paper) return "the band of tdf = \"paper\" is no length";
+    if (d.tdf.kind == TdfSettings::Kind::paper)
+      return "the band of tdf = \"paper\" is not a length";
   return no_design(scene, part);
 }
 
@@ -155,29 +156,32 @@ Levels sharpness_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::optional<Theory> void_theory(const Scene&, Part, const std::string&) {
-  return Theory{1, "small alpha, in which the Heaviside function is linear"};
+  return Theory{1, "small alpha, because the Heaviside function is linear in alpha"};
 }
 std::optional<Theory> sharpness_theory(const Scene&, Part, const std::string&) {
   return no_order(
-      "where n components coincide their smooth maximum lies ln n / sharpness above the maximum "
-      "(order 1), where they cross it does so on a strip as narrow (order 2)");
+      "the smooth maximum of n coinciding components exceeds their maximum by ln n / sharpness "
+      "(order 1); where components cross, only a strip of this width is changed (order 2)");
 }
 
 /// Returns the theory for the size of cells. A point force on a plane continuum causes an infinite
 /// displacement and therefore an infinite compliance, so there is no limit then.
 std::optional<Theory> cell_theory(const Scene& scene, Part, const std::string& quantity) {
-  const auto is_point = [](const PlaneForce& f) { return f.place.kind == Place::Kind::point; };
+  const auto is_point = [](const PlaneForce& f) {
+    return f.location.kind == NodeRegion::Kind::point;
+  };
   const bool points =
-      scene.domain && std::ranges::any_of(scene.domain->loads, [&](const LoadCase& load) {
+      scene.domain && std::ranges::any_of(scene.domain->loads, [&](const StaticLoadCase& load) {
         return std::ranges::any_of(load.forces, is_point);
       });
   if (points && quantity.ends_with("compliance"))
-    return Theory{0, "under a force at a point it grows with the logarithm of the cells"};
-  return no_order("edges of components cross the cells anywhere");
+    return Theory{
+        0, "under a point force the compliance grows with the logarithm of the number of cells"};
+  return no_order("the edges of components cross the cells at arbitrary positions");
 }
 
 std::optional<Theory> band_theory(const Scene&, Part, const std::string&) {
-  return no_order("a band of less than a cell falls between the cells");
+  return no_order("a band narrower than one cell is not resolved by the cells");
 }
 
 }  // namespace

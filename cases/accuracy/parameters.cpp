@@ -28,7 +28,7 @@ bool bends(const Scene& scene) {
 bool mesh_changes(const Scene& scene) {
   return std::ranges::any_of(scene.bodies, &Body::mesh_changes);
 }
-bool is_beam(const Body& b) { return b.place() == fem::TermPlace::beam; }
+bool is_beam(const Body& b) { return b.term_domain() == fem::TermDomain::beam; }
 bool any_beams(const Scene& scene) { return std::ranges::any_of(scene.bodies, is_beam); }
 bool all_beams(const Scene& scene) {
   return !scene.bodies.empty() && std::ranges::all_of(scene.bodies, is_beam);
@@ -58,8 +58,8 @@ std::optional<int> across(const Body& b, double factor) {
 }
 
 std::string no_elements(const Scene& scene, Part) {
-  if (scene.bodies.empty()) return "the case has no plates with elements";
-  if (any_lines(scene)) return "[[body.line]] numbers lines of the case's own mesh";
+  if (scene.bodies.empty()) return "the case has no bodies with elements";
+  if (any_lines(scene)) return "[[body.line]] contains line numbers of the mesh of the case";
   return "";
 }
 
@@ -96,10 +96,10 @@ Levels mesh_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::optional<Theory> mesh_theory(const Scene& scene, Part part, const std::string&) {
-  if (part == Part::design) return no_order("the motion is only where the loads come from");
+  if (part == Part::design) return no_order("the motion only supplies the loads");
   if (all_beams(scene))
     return Theory{2,
-                  "smooth motions, gradients across the axis being linear along it: "
+                  "smooth motions; gradients across the axis are linear along it: "
                   "2 (1 + 1 - 1), Strang & Fix 1973"};
   if (any_beams(scene)) return {};
   if (std::ranges::any_of(scene.joints, [](const Joint& j) { return j.row->holds_point; }) ||
@@ -119,10 +119,11 @@ std::string other_shape(const Scene& scene) {
 }
 
 std::string no_shape(const Scene& scene, Part part) {
-  if (part == Part::design) return "designs are analysed with cells";
-  if (any_beams(scene)) return "beams have one shape set";
+  if (part == Part::design) return "designs are analysed on the design mesh";
+  if (any_beams(scene)) return "beams have only one set of shape functions";
   for (const Body& b : scene.bodies)
-    if (b.shape != scene.bodies.front().shape) return "bodies have different shape sets";
+    if (b.shape != scene.bodies.front().shape)
+      return "the bodies have different sets of shape functions";
   return no_elements(scene, part);
 }
 
@@ -139,7 +140,7 @@ Levels shape_levels(const Scene& scene, const io::CaseFile& file) {
 std::optional<Theory> no_theory(const Scene&, Part, const std::string&) { return {}; }
 
 std::string no_model(const Scene& scene, Part) {
-  return all_beams(scene) ? "" : "\"gcm\" and \"ecm\" are models of beams";
+  return all_beams(scene) ? "" : "\"gcm\" and \"ecm\" are models of beams only";
 }
 
 /// Returns levels of the alternative beam model on all meshes. This model does not approximate the
@@ -151,7 +152,7 @@ Levels model_levels(const Scene& scene, const io::CaseFile& file) {
     for (const Body& b : scene.bodies) {
       std::string terms;
       for (const std::string& term : b.terms) {
-        const auto others = fem::alternatives(fem::term_row(term), b.place());
+        const auto others = fem::alternatives(fem::term_row(term), b.term_domain());
         if (!others.empty()) models += (models.empty() ? "" : ", ") + others.front();
         terms += (terms.empty() ? "'" : ", '") + (others.empty() ? term : others.front()) + "'";
       }
@@ -163,10 +164,10 @@ Levels model_levels(const Scene& scene, const io::CaseFile& file) {
 }
 
 std::string no_time(const Scene& scene, Part) {
-  return moves(scene) ? "" : "nothing moves: there is no time";
+  return moves(scene) ? "" : "the case has no motion in time";
 }
 std::string no_time_or_design(const Scene& scene, Part part) {
-  return part == Part::design ? "of the motion only" : no_time(scene, part);
+  return part == Part::design ? "this series is for motions only" : no_time(scene, part);
 }
 
 Levels step_levels(const Scene& scene, const io::CaseFile&) {
@@ -186,24 +187,24 @@ Levels step_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::optional<Theory> step_theory(const Scene& scene, Part part, const std::string&) {
-  if (part == Part::design) return no_order("loads of a motion sampled in time");
+  if (part == Part::design) return no_order("the loads are samples of the motion in time");
   if (mesh_changes(scene))
-    return no_order("every change of the mesh sets off axial ringing that steps do not resolve");
+    return no_order("every mesh change excites axial vibrations that the steps do not resolve");
   if (scene.time.start == Start::rigid && !scene.bodies.empty())
-    return no_order("the start sets off axial ringing that steps do not resolve");
+    return no_order("the start excites axial vibrations that the steps do not resolve");
   return Theory{2, "steps that resolve the motion, Arnold & Bruls 2007"};
 }
 
 std::string no_adaptive(const Scene& scene, Part part) {
   if (scene.time.integrator != "generalized_alpha")
-    return "only \"generalized_alpha\" knows its local error";
+    return "only \"generalized_alpha\" estimates its local error";
   return no_time_or_design(scene, part);
 }
 
 std::string no_explicit(const Scene& scene, Part part) {
-  if (mesh_changes(scene)) return "\"minimal_coordinates\" keep their mesh";
+  if (mesh_changes(scene)) return "\"minimal_coordinates\" cannot change the mesh";
   if (!all_beams(scene) && !scene.bodies.empty())
-    return "the stiffness of plates needs implicit steps";
+    return "the high stiffness of plates requires implicit steps";
   return no_time_or_design(scene, part);
 }
 
@@ -232,11 +233,13 @@ Levels explicit_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::optional<Theory> tolerance_theory(const Scene&, Part, const std::string&) {
-  return no_order("steps of another tolerance fall elsewhere, so errors scatter about order 1");
+  return no_order(
+      "steps end at other times if the tolerance changes, so errors scatter about order 1");
 }
 
 std::string no_rho(const Scene& scene, Part part) {
-  if (scene.time.integrator != "generalized_alpha") return "\"generalized_alpha\" has it";
+  if (scene.time.integrator != "generalized_alpha")
+    return "only \"generalized_alpha\" has this parameter";
   return no_time_or_design(scene, part);
 }
 
@@ -252,8 +255,8 @@ Levels rho_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::string no_integrator(const Scene& scene, Part part) {
-  if (scene.has_free_lines()) return "free lines need \"generalized_alpha\"";
-  if (scene.time.tolerance || is_explicit(scene)) return "the steps of the case adapt";
+  if (scene.has_eulerian_lines()) return "free mesh lines need \"generalized_alpha\"";
+  if (scene.time.tolerance || is_explicit(scene)) return "the case uses adaptive steps";
   return no_time_or_design(scene, part);
 }
 
@@ -269,7 +272,9 @@ Levels integrator_levels(const Scene& scene, const io::CaseFile& file) {
 }
 
 std::string no_bending(const Scene& scene, Part part) {
-  return part == Part::motion && bends(scene) ? "" : "there is no bending at Gauss points";
+  return part == Part::motion && bends(scene)
+             ? ""
+             : "this series is for motions in which all bodies have bending at Gauss points";
 }
 
 Levels quadrature_levels(const Scene& scene, const io::CaseFile&) {
@@ -285,7 +290,7 @@ Levels quadrature_levels(const Scene& scene, const io::CaseFile&) {
 }
 
 std::string no_path(const Scene& scene, Part part) {
-  return scene.statics && part == Part::motion ? "" : "there is no path of equilibria";
+  return scene.statics && part == Part::motion ? "" : "the case has no path of equilibria";
 }
 
 Levels path_levels(const Scene& scene, const io::CaseFile&) {
@@ -326,7 +331,7 @@ const std::vector<Parameter>& parameters() {
 const Parameter& parameter(const std::string& name) {
   for (const Parameter& each : parameters())
     if (each.name == name) return each;
-  throw Error::input("ladder '" + name + "' is not known; there are: " +
+  throw Error::input("refinement series '" + name + "' is unknown; the names are: " +
                      joined(std::views::transform(parameters(), &Parameter::name)));
 }
 

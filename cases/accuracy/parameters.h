@@ -18,7 +18,7 @@ struct Level {
 };
 
 /// A row of the table of discretization parameters. Every parameter has a refinement series, which
-/// case files call "ladder".
+/// case files call "refinement series".
 struct Parameter {
   std::string name;  ///< Name of the parameter.
 

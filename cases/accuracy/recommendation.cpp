@@ -10,7 +10,7 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 std::string percent(double share) { return io::to_text(100 * share, 2) + " %"; }
 
@@ -27,8 +27,8 @@ double worst(const std::vector<double>& errors) {
 struct Search {
   const std::vector<Group>& groups;
   double target;
-  Choice now;
-  std::optional<Choice> best = {};
+  LevelChoice now;
+  std::optional<LevelChoice> best = {};
 
   void visit(const std::vector<double>& costs) {
     if (!std::ranges::all_of(now.errors, [&](double error) { return error <= target; })) return;
@@ -60,7 +60,7 @@ bool is_sound(const AccuracyStudy& study, const RefinementSeries& series, const 
               size_t q, double target) {
   const RefinementSeries* leader = leader_of(study, series.parameter->group, series.part);
   if (!leader || !series.parameter->is_setting) return false;
-  const Limit& limit = leader->limits[q];
+  const ExtrapolatedLimit& limit = leader->limits[q];
   if (limit.converged) return run.measured() || run.status == "cut";
   if (!limit.bounded() || !run.measured()) return false;
   if (&series == leader && run.errors[q] == 0) return true;  // its value is taken as the limit
@@ -90,7 +90,7 @@ Candidate candidate_of(const AccuracyStudy& study, const Parameter& parameter, c
     if (covers[q] && leader_of(study, parameter.group, part)) {
       const auto [series, i] = level_in(study, &parameter, level.overrides, part);
       const bool sound = series && is_sound(study, *series, series->levels[i], q, target);
-      error = sound ? series->levels[i].errors[q] : kNone;
+      error = sound ? series->levels[i].errors[q] : kUndefined;
     }
     out.errors.push_back(error);
   }
@@ -98,7 +98,7 @@ Candidate candidate_of(const AccuracyStudy& study, const Parameter& parameter, c
     double cost = 1;
     if (leader_of(study, parameter.group, part)) {
       const auto [series, i] = level_in(study, &parameter, level.overrides, part);
-      cost = series ? series->seconds(i) / base.seconds_cpu : kNone;
+      cost = series ? series->seconds(i) / base.seconds_cpu : kUndefined;
     }
     out.costs.push_back(cost);
   }
@@ -120,16 +120,17 @@ std::string left_out(const AccuracyStudy& study, const std::vector<bool>& covers
     const Estimate& e = study.estimates[q];
     out += (out.empty() ? "" : ", ") + study.interests[q].words() +
            (!e.has_limit           ? ": it has no limit"
-            : !e.unbounded.empty() ? ": nothing bounds the error of " + e.unbounded
-                                   : ": its limit is known to " + percent(e.uncertainty) + " only");
+            : !e.unbounded.empty() ? ": there is no error bound for " + e.unbounded
+                                   : ": the uncertainty of its limit is " + percent(e.uncertainty));
   }
   return out;
 }
 
 }  // namespace
 
-std::optional<Choice> cheapest(const std::vector<Group>& groups, std::span<const double> base_costs,
-                               std::span<const double> uncertainties, double target) {
+std::optional<LevelChoice> cheapest(const std::vector<Group>& groups,
+                                    std::span<const double> base_costs,
+                                    std::span<const double> uncertainties, double target) {
   Search search{groups, target, {{}, {uncertainties.begin(), uncertainties.end()}, 0}};
   search.visit({base_costs.begin(), base_costs.end()});
   return search.best;
@@ -172,7 +173,7 @@ Recommendation recommend(const AccuracyStudy& study, double target, double share
   const std::vector<Group> groups = groups_of(study, target);
   const auto choice = cheapest(groups, costs, uncertainties, share * target);
   if (!choice) {
-    out.sentence = "no setting among those measured or predicted reaches it";
+    out.sentence = "no measured or predicted setting reaches the target error";
     return out;
   }
   out.error = worst(choice->errors);
@@ -195,13 +196,14 @@ void verify(const AccuracyStudy& study, const std::vector<double>& values, doubl
     const double error = std::abs(values[q] - estimate.value) / estimate.scale;
     out.measured_error = std::isnan(error) ? error : std::max(out.measured_error, error);
     if (error <= kTargetFactor * out.target) continue;  // false for NaN
-    out.sentence += (out.withdrawn ? "; " : "withdrawn: ") + study.interests[q].words() +
-                    " is off by " + percent(error) + " where " + percent(out.target) +
-                    " is the target, so the errors of the parameters do not add up";
+    out.sentence += std::string(out.withdrawn ? "; " : "withdrawn: ") + "the error of " +
+                    study.interests[q].words() + " is " + percent(error) +
+                    ", the target error is " + percent(out.target) +
+                    "; the errors of the parameters do not add up";
     out.withdrawn = true;
   }
   const std::string without = left_out(study, out.covers);
-  if (!out.withdrawn) out.sentence = "kept" + (without.empty() ? "" : "; not of " + without);
+  if (!out.withdrawn) out.sentence = "kept" + (without.empty() ? "" : "; not covered: " + without);
 }
 
 }  // namespace flexmorph::cases

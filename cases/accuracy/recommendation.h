@@ -30,7 +30,7 @@ struct Group {
 };
 
 /// A combination of levels, one level of each group, with its errors and its cost.
-struct Choice {
+struct LevelChoice {
   std::vector<size_t> picked;  ///< Index of the chosen candidate of each group (n_groups).
   std::vector<double> errors;  ///< Sum of errors and uncertainty of each quantity (n_quantities).
   double cost = 0;             ///< Predicted run time [s].
@@ -43,8 +43,9 @@ struct Choice {
 /// @param base_costs     run time of the unchanged case in each subproblem (n_parts) [s]
 /// @param uncertainties  relative uncertainty of the limit of each quantity (n_quantities) [-]
 /// @param target         target error [-]
-std::optional<Choice> cheapest(const std::vector<Group>& groups, std::span<const double> base_costs,
-                               std::span<const double> uncertainties, double target);
+std::optional<LevelChoice> cheapest(const std::vector<Group>& groups,
+                                    std::span<const double> base_costs,
+                                    std::span<const double> uncertainties, double target);
 
 /// Ratio of the target error to the uncertainty of the limit of a series that is not converged,
 /// from which on its levels can be recommended.

@@ -38,7 +38,7 @@ std::string order_at(const RefinementSeries& series, size_t level, size_t q) {
 }
 
 Rows quantity_rows(const AccuracyStudy& study) {
-  Rows rows = {{"quantity", "value", "limit", "known to", "off by", "reference", "limit off by"}};
+  Rows rows = {{"quantity", "value", "limit", "uncertainty", "error", "reference", "difference"}};
   for (size_t q = 0; q < study.estimates.size(); ++q) {
     const Estimate& e = study.estimates[q];
     const std::string limit = !e.has_limit                   ? "none"
@@ -61,7 +61,7 @@ Rows series_rows(const AccuracyStudy& study, const RefinementSeries& series) {
     const std::string of = quantities.size() > 1 ? " of " + study.interests[q].words() : "";
     rows[0].insert(rows[0].end(), {study.interests[q].words(), "error" + of, "order" + of});
   }
-  rows[0].insert(rows[0].end(), {"unknowns", "CPU s", "MB", ""});
+  rows[0].insert(rows[0].end(), {"unknowns", "CPU [s]", "memory [MB]", "note"});
   for (size_t i = 0; i < series.levels.size(); ++i) {
     const LevelRun& run = series.levels[i];
     if (run.status == "refused") continue;
@@ -89,27 +89,28 @@ std::vector<std::string> series_sentences(const AccuracyStudy& study,
                                           const RefinementSeries& series) {
   const std::string& group = series.parameter->group;
   if (!series.parameter->has_limit)
-    return {"errors against the limit of " + group + "; no limit of its own"};
+    return {"errors refer to the limit of " + group +
+            ", because this series has no limit of its own"};
   const RefinementSeries* leader = leader_of(study, group, series.part);
   std::vector<std::string> out;
   for (const size_t q : quantities_of(study, series.part)) {
-    const Limit& limit = series.limits[q];
+    const ExtrapolatedLimit& limit = series.limits[q];
     out.push_back(study.interests[q].words() + ": " +
                   (limit.converged ? "converged, " : "not converged: ") + limit.sentence);
     if (leader && leader != &series && std::isfinite(limit.value))
       out.back() +=
-          "; its limit differs from that of " + group + " by " +
+          "; its limit differs from the limit of " + group + " by " +
           percent(std::abs(limit.value - leader->limits[q].value) / study.estimates[q].scale);
   }
   if (const size_t cut = series.count("cut"); cut > 0)
-    out.push_back("cut by the budget: " + std::to_string(cut) + " of " +
+    out.push_back("not measured because of the budget: " + std::to_string(cut) + " of " +
                   std::to_string(series.levels.size() - series.count("refused")) + " levels");
   return out;
 }
 
 Rows recommendation_rows(const AccuracyStudy& study) {
-  Rows rows = {{"target", "settings", "predicted error", "measured error", "CPU s predicted",
-                "CPU s", "verdict", "file"}};
+  Rows rows = {{"target error", "settings", "predicted error", "measured error",
+                "predicted CPU [s]", "measured CPU [s]", "verdict", "file"}};
   for (const Recommendation& r : study.recommendations) {
     const bool found = !r.names.empty();
     rows.push_back({percent(r.target), joined(r.names, "; "), found ? percent(r.error) : "",
@@ -138,15 +139,17 @@ std::string report_of(const AccuracyStudy& study, bool markdown) {
       out += (markdown ? "- " : "  ") + words + "\n";
     out += "\n";
   }
-  for (const auto& [name, why] : study.absent) out += "absent: " + name + " (" + why + ")\n\n";
+  for (const auto& [name, why] : study.absent) out += "not refined: " + name + " (" + why + ")\n\n";
   out += heading("Cheapest settings") + table(recommendation_rows(study));
   if (markdown)
     out +=
-        "A star marks the case as it is; `~` marks what the fitted order predicts. The error of a "
-        "level is the one against the limit of its own ladder, with the other parameters as in the "
-        "case. A limit is the value of the case and what is missing to the limits of all ladders. "
-        "An error of settings is the sum over these parameters, and of what the limits are "
-        "uncertain by; it covers no other parameter.\n";
+        "A star marks the unchanged case; `~` marks numbers that the fitted order predicts. The "
+        "error of a level is its difference from the limit of its own refinement series, with all "
+        "other parameters as in the case. The limit of a quantity is the value of the case plus "
+        "the differences to the limits of all refinement series. The column `difference` compares "
+        "this limit with the reference. The error of settings is the sum of the errors of all "
+        "refined parameters and of the uncertainties of their limits. It does not cover other "
+        "parameters.\n";
   return out;
 }
 
@@ -165,9 +168,9 @@ io::Panel times_panel(const AccuracyStudy& study, size_t q) {
   const Estimate& estimate = study.estimates[q];
   const bool whole = estimate.has_limit && std::isfinite(estimate.uncertainty);
   io::Panel out;
-  out.title = study.interests[q].words() + ": error against CPU time";
+  out.title = study.interests[q].words() + ": error over CPU time";
   out.x = {"CPU time [s]", true};
-  out.y = {whole ? "error of all parameters together [-]" : "error against the ladder's limit [-]",
+  out.y = {whole ? "total error of all parameters [-]" : "error to the limit of the series [-]",
            true};
   std::vector<std::pair<double, double>> points;
   size_t color = 0;
@@ -194,7 +197,7 @@ io::Panel times_panel(const AccuracyStudy& study, size_t q) {
   if (front.x.size() > 1) out.curves.push_back(front);
   if (whole && estimate.uncertainty > kMinError && !points.empty()) {
     const auto [first, last] = std::minmax_element(points.begin(), points.end());
-    io::Curve known = curve_of("what the limit is known to", color, true);
+    io::Curve known = curve_of("uncertainty of the limit", color, true);
     known.x = {first->first, last->first};
     known.y = {estimate.uncertainty, estimate.uncertainty};
     out.curves.push_back(known);
@@ -205,9 +208,9 @@ io::Panel times_panel(const AccuracyStudy& study, size_t q) {
 /// Plots errors against the discretization parameters, with the fitted orders of converged series.
 io::Panel parameters_panel(const AccuracyStudy& study, size_t q) {
   io::Panel out;
-  out.title = study.interests[q].words() + ": error against the parameters";
-  out.x = {"parameter, relative to the case", true};
-  out.y = {"error against the ladder's limit [-]", true};
+  out.title = study.interests[q].words() + ": error over the parameters";
+  out.x = {"parameter divided by its value in the case", true};
+  out.y = {"error to the limit of the series [-]", true};
   size_t color = 0;
   for (const RefinementSeries& series : study.series) {
     if (series.part != study.parts[q]) continue;
@@ -219,7 +222,7 @@ io::Panel parameters_panel(const AccuracyStudy& study, size_t q) {
     }
     if (!series.parameter->has_limit || curve.x.empty()) continue;
     out.curves.push_back(curve);
-    const Limit& limit = series.limits[q];
+    const ExtrapolatedLimit& limit = series.limits[q];
     if (!series.leads() || !limit.converged || !std::isfinite(limit.order) || curve.x.size() < 2)
       continue;
     io::Curve fit = curve_of("order " + to_text(limit.order, 3), curve.color, true);
@@ -236,11 +239,22 @@ std::string accuracy_text(const AccuracyStudy& study) { return report_of(study, 
 std::string accuracy_markdown(const AccuracyStudy& study) { return report_of(study, true); }
 
 void write_accuracy_csv(const AccuracyStudy& study, const std::string& path) {
-  const std::vector<std::string> columns = {
-      "part",        "ladder",    "level",    "h",       "status",
-      "quantity",    "value",     "error",    "order",   "limit",
-      "uncertainty", "converged", "unknowns", "message", "peak_memory_bytes",
-      "seconds_cpu"};
+  const std::vector<std::string> columns = {"part",
+                                            "refinement series",
+                                            "level",
+                                            "h",
+                                            "status",
+                                            "quantity",
+                                            "value",
+                                            "error",
+                                            "order",
+                                            "limit",
+                                            "uncertainty",
+                                            "converged",
+                                            "unknowns",
+                                            "message",
+                                            "peak_memory_bytes",
+                                            "seconds_cpu"};
   io::CsvWriter csv(path, columns);
   const auto cell = [](double value) {
     return std::isfinite(value) ? io::Cell(value) : io::Cell();
@@ -250,7 +264,7 @@ void write_accuracy_csv(const AccuracyStudy& study, const std::string& path) {
       const LevelRun& run = series.levels[i];
       const bool measured = run.measured();
       for (const size_t q : quantities_of(study, series.part)) {
-        const Limit& limit = series.limits[q];
+        const ExtrapolatedLimit& limit = series.limits[q];
         const std::vector<io::Cell> row = {to_string(series.part),
                                            series.parameter->name,
                                            run.level.name,

@@ -7,14 +7,14 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 /// Computes the errors of the levels of a series against the limit of the group. Errors of levels
 /// that were cut by the budget are predicted by the order of convergence.
 void find_errors(const AccuracyStudy& study, RefinementSeries& series, size_t q) {
   const RefinementSeries* leader = leader_of(study, series.parameter->group, series.part);
   if (!leader || !std::isfinite(leader->limits[q].value)) return;
-  const Limit& limit = leader->limits[q];
+  const ExtrapolatedLimit& limit = leader->limits[q];
   const auto error_of = [&](const LevelRun& run) {
     return std::abs(run.values[q] - limit.value) / study.estimates[q].scale;
   };
@@ -26,7 +26,7 @@ void find_errors(const AccuracyStudy& study, RefinementSeries& series, size_t q)
   double largest = 0;
   for (size_t i = series.levels.size(); i-- > 0;) {
     LevelRun& run = series.levels[i];
-    double error = kNone;
+    double error = kUndefined;
     if (run.measured())
       error = error_of(run);
     else if (run.status == "cut" && extrapolates)
@@ -41,10 +41,10 @@ void find_errors(const AccuracyStudy& study, RefinementSeries& series, size_t q)
 
 void find_limits(AccuracyStudy& study, RefinementSeries& series) {
   series.limits.assign(study.interests.size(), {});
-  for (LevelRun& run : series.levels) run.errors.assign(study.interests.size(), kNone);
+  for (LevelRun& run : series.levels) run.errors.assign(study.interests.size(), kUndefined);
   for (size_t q = 0; q < study.interests.size(); ++q) {
-    Limit& limit = series.limits[q];
-    limit.value = limit.order = limit.uncertainty = kNone;
+    ExtrapolatedLimit& limit = series.limits[q];
+    limit.value = limit.order = limit.uncertainty = kUndefined;
     if (study.parts[q] != series.part || !series.parameter->has_limit) continue;
     std::vector<LevelValue> values;
     for (const LevelRun& run : series.levels)
@@ -59,7 +59,7 @@ void add_limits(const AccuracyStudy& study, size_t q, Estimate& out) {
   out.value = out.own;
   for (const RefinementSeries& series : study.series) {
     if (!series.leads() || series.part != study.parts[q]) continue;
-    const Limit& limit = series.limits[q];
+    const ExtrapolatedLimit& limit = series.limits[q];
     const std::optional<Theory>& theory = series.theories[q];
     if (theory && theory->has_no_limit()) out.has_limit = false;
     if (!limit.bounded()) {
@@ -141,7 +141,7 @@ void evaluate(AccuracyStudy& study) {
     estimate.scale = study.interests[q].scale.value_or(std::abs(estimate.own));
     if (!(estimate.scale > 0))
       throw Error::input("accuracy: " + study.interests[q].words() +
-                         " is 0: its errors need a `scale`");
+                         " is 0, so relative errors need a `scale`");
   }
   for (RefinementSeries& series : study.series) find_limits(study, series);
   for (RefinementSeries& series : study.series)

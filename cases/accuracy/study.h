@@ -45,7 +45,7 @@ struct RefinementSeries {
   std::vector<LevelRun> levels;                 ///< Levels, coarse to fine.
 
   /// Limits of all quantities (n_quantities); NaN for quantities of another subproblem.
-  std::vector<Limit> limits;
+  std::vector<ExtrapolatedLimit> limits;
 
   /// Tells whether the parameter leads its group.
   bool leads() const { return parameter->name == parameter->group; }

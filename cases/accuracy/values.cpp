@@ -13,7 +13,7 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -58,16 +58,16 @@ double largest_size(const std::vector<double>& x, const std::vector<double>& y) 
 double column_value(const io::CsvTable& table, const std::string& abscissa,
                     const Interest& interest) {
   const std::vector<double> x = table.numbers(abscissa), y = table.numbers(interest.name);
-  std::vector<double> places, values;
+  std::vector<double> locations, values;
   for (size_t i = 0; i < x.size(); ++i) {
-    if (!places.empty() && x[i] <= places.back()) {
+    if (!locations.empty() && x[i] <= locations.back()) {
       values.back() = y[i];
       continue;
     }
-    places.push_back(x[i]);
+    locations.push_back(x[i]);
     values.push_back(y[i]);
   }
-  return places.empty() ? kNone : value_at(places, values, interest);
+  return locations.empty() ? kUndefined : value_at(locations, values, interest);
 }
 
 /// Returns the number of a JSON object at a dotted path; NaN if there is none.
@@ -81,11 +81,11 @@ double json_value(const nlohmann::json& run, const std::string& path) {
       break;
     }
     const std::string key = path.substr(begin, dot - begin);
-    if (!here->is_object() || !here->contains(key)) return kNone;
+    if (!here->is_object() || !here->contains(key)) return kUndefined;
     here = &(*here)[key];
     begin = dot + 1;
   }
-  return here->is_number() ? here->get<double>() : kNone;
+  return here->is_number() ? here->get<double>() : kUndefined;
 }
 
 /// Returns a number of the first design, or of the design of a named body ("arm.volume"); NaN if
@@ -96,7 +96,7 @@ double design_value(const nlohmann::json& run, const std::string& name) {
   const std::string figure = dot == std::string::npos ? name : name.substr(dot + 1);
   for (const nlohmann::json& each : run.value("results", nlohmann::json::array()))
     if (body.empty() || each.value("body", "") == body) return json_value(each, figure);
-  return kNone;
+  return kUndefined;
 }
 
 }  // namespace
@@ -110,25 +110,25 @@ Part part_of(const PreparedCase& prepared, const Interest& interest) {
     if (!known) continue;
     if (interest.at != Interest::At::end &&
         (part == Part::design || is_of_run(scene, interest.name)))
-      throw Error::input(what + "it is one number of a run: `at` is for columns");
+      throw Error::input(what + "this quantity is one number per run; `at` is only for columns");
     const double end = scene.statics ? scene.statics->to : scene.time.end;
     if (interest.at == Interest::At::time && interest.time > end * (1 + 1e-9))
-      throw Error::input(what + "at = " + io::to_text(interest.time) + " is after the end, " +
-                         io::to_text(end));
+      throw Error::input(what + "at = " + io::to_text(interest.time) +
+                         " is after the end of the run, " + io::to_text(end));
     return part;
   }
-  throw Error::input(what +
-                     "this case has no such quantity; there are: " + all_candidates(prepared) +
+  throw Error::input(what + "this case has no quantity with this name; possible quantities: " +
+                     all_candidates(prepared) +
                      ", and numbers of run.json such as motion.constraint_drift");
 }
 
 double value_at(const std::vector<double>& x, const std::vector<double>& y,
                 const Interest& interest) {
-  if (x.empty()) return kNone;
+  if (x.empty()) return kUndefined;
   if (interest.at == Interest::At::max) return largest_size(x, y);
   if (interest.at == Interest::At::end) return y.back();
   const double t = interest.time, near = 1e-9 * std::max(std::abs(x.back()), std::abs(t));
-  if (t < x.front() - near || t > x.back() + near) return kNone;
+  if (t < x.front() - near || t > x.back() + near) return kUndefined;
   const auto above = static_cast<size_t>(std::lower_bound(x.begin(), x.end(), t) - x.begin());
   for (const size_t i : {above, above - 1})
     if (i < x.size() && std::abs(x[i] - t) <= near) return y[i];
@@ -138,7 +138,7 @@ double value_at(const std::vector<double>& x, const std::vector<double>& y,
 }
 
 double value_in(const std::string& folder, const Interest& interest, Part part) {
-  double out = kNone;
+  double out = kUndefined;
   const nlohmann::json run = nlohmann::json::parse(text_of(folder + "/run.json"), nullptr, false);
   if (part == Part::design) {
     if (run.is_object()) out = design_value(run, interest.name);
@@ -151,7 +151,7 @@ double value_in(const std::string& folder, const Interest& interest, Part part) 
       out = json_value(run, interest.name);
   }
   if (!std::isfinite(out))
-    throw Error::numerical(folder + ": there is no value of " + interest.words());
+    throw Error::numerical(folder + ": the results have no value of " + interest.words());
   return out;
 }
 
@@ -159,9 +159,10 @@ double reference_of(const Interest& interest) {
   if (interest.value) return *interest.value;
   const io::CsvTable table = io::read_csv(interest.file);
   if (!holds(table.columns, interest.name))
-    throw Error::input(interest.file + ": no column " + interest.name);
+    throw Error::input(interest.file + ": the file has no column " + interest.name);
   const double out = column_value(table, table.columns.front(), interest);
-  if (!std::isfinite(out)) throw Error::input(interest.file + ": no value of " + interest.words());
+  if (!std::isfinite(out))
+    throw Error::input(interest.file + ": the file has no value of " + interest.words());
   return out;
 }
 

@@ -64,7 +64,7 @@ void shake(std::vector<Component>& components, double jitter, int seed) {
 /// Returns the cells at the two pins of a link (a body of a mechanism between two pins): the cells
 /// of the eye around a bore, or without a bore the cells around the node of the pin. The first pin
 /// counts as a support and the second pin as a load.
-std::vector<HeldOrLoaded> pin_places(const Link& link, const Grid& g) {
+std::vector<HeldOrLoaded> pin_locations(const Link& link, const Grid& g) {
   std::vector<HeldOrLoaded> out = {{"first pin", true, {}}, {"second pin", false, {}}};
   for (size_t k = 0; k < 2; ++k) {
     if (link.bores[k] > 0) {
@@ -81,10 +81,10 @@ std::vector<HeldOrLoaded> pin_places(const Link& link, const Grid& g) {
   return out;
 }
 
-std::vector<HeldOrLoaded> places_of(const Scene& scene, const BodyDesign& design,
-                                    std::span<const signed char> outside) {
-  if (scene.domain) return static_places(scene, design.grid, outside);
-  return design.link ? pin_places(*design.link, design.grid) : std::vector<HeldOrLoaded>{};
+std::vector<HeldOrLoaded> locations_of(const Scene& scene, const BodyDesign& design,
+                                       std::span<const signed char> outside) {
+  if (scene.domain) return static_locations(scene, design.grid, outside);
+  return design.link ? pin_locations(*design.link, design.grid) : std::vector<HeldOrLoaded>{};
 }
 
 mmc::ComplianceSettings settings_of(const Scene& scene, const BodyDesign& design) {
@@ -101,7 +101,8 @@ std::vector<Segment> held_lines(const Scene& scene, const BodyDesign& design) {
   if (!scene.domain) return {{{grid.x0, grid.y0}, {grid.x0, grid.y0 + grid.height}}};
   std::vector<Segment> out;
   for (const PlaneSupport& s : scene.domain->supports)
-    if (s.place.kind == Place::Kind::edge) out.push_back({s.place.box.lower, s.place.box.upper});
+    if (s.location.kind == NodeRegion::Kind::edge)
+      out.push_back({s.location.box.lower, s.location.box.upper});
   return out;
 }
 
@@ -182,7 +183,7 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene) {
                    .compliance = settings_of(scene, d),
                    .domain = scene.domain ? scene.domain->shape : with_bores(d),
                    .outside = plate.outside,
-                   .places = places_of(scene, d, plate.outside),
+                   .locations = locations_of(scene, d, plate.outside),
                    .held = held_lines(scene, d),
                    .widths = d.widths,
                    .fillets = {d.fillet_radius, kThinnestFilling * d.widths.solid},

@@ -24,9 +24,9 @@ struct Mechanism {
   /// Moving-root mesh control (when elements at the moving root are split or merged), one for each
   /// plate that is held by a hub, a sleeve or a rigid body. A hub is a rigid frame with prescribed
   /// motion that carries a body.
-  std::vector<fem::Growth> growths;
+  std::vector<fem::MovingRoot> moving_roots;
   fem::MotionSettings motion;  ///< Settings of the motion.
-  std::string start_words;     ///< Text about the start if the program chooses it; otherwise empty.
+  std::string start_text;      ///< Text about the start if the program chooses it; otherwise empty.
 };
 
 /// A mesh of a run that can differ from that of the scene (see Verify). The lengths at which
@@ -90,8 +90,8 @@ std::vector<mmc::BodyProblem> build_problems(const Scene& scene);
 /// Finds the cells of every support and of every force of a static scene, with names for messages.
 /// @param outside  1 for cells outside of the domain (n_cells); empty: none
 /// @throws Error (input) for a location without a node that can be material.
-std::vector<HeldOrLoaded> static_places(const Scene& scene, const Grid& grid,
-                                        std::span<const signed char> outside);
+std::vector<HeldOrLoaded> static_locations(const Scene& scene, const Grid& grid,
+                                           std::span<const signed char> outside);
 /// Creates the evaluator of the compliances of a static scene on its design mesh.
 /// @throws Error (input) for a location without a node that can be material.
 std::unique_ptr<mmc::ComplianceEvaluator> build_static_loads(const Scene& scene,

@@ -19,7 +19,7 @@ using Ring = std::vector<Vec2>;
 /// Fractions of the domain's size: the distance within which points are moved onto borders, this
 /// distance for sides along borders, the permitted extension of an outline beyond the domain, and
 /// the smallest permitted size of an outline.
-constexpr double kRounding = 1e-9, kAlong = 1e-5, kBeyond = 2e-3, kSmallest = 0.05;
+constexpr double kRounding = 1e-9, kArcTolerance = 1e-5, kOverhang = 2e-3, kMinHoleArea = 0.05;
 
 Region domain_of(const Scene& scene, const BodyDesign& design) {
   if (scene.domain && !scene.domain->shape.outer.empty()) return scene.domain->shape;
@@ -55,17 +55,18 @@ std::vector<Ring> read_rings(const std::string& path, double thickness) {
   if (type == ".step" || type == ".stp") return io::read_step_outline(path, thickness);
   if (type != ".dxf") throw Error::input(path + ": a part is a .dxf, .step or .stp file");
   io::DrawingSettings settings;
-  settings.needs_unit = "$INSUNITS of the drawing says it";
+  settings.needs_unit = "set $INSUNITS in the drawing";
   settings.layers = outline_layers(path);
   try {
     return io::read_drawing(path, settings);
   } catch (const Error& error) {
     if (settings.layers.empty()) throw;
-    throw Error::input(std::string(error.what()) + " (on layers " + joined(settings.layers) + ")");
+    throw Error::input(std::string(error.what()) + " (read from the layers " +
+                       joined(settings.layers) + ")");
   }
 }
 
-std::string box_words(const Box& box) {
+std::string box_text(const Box& box) {
   const auto point = [](const Vec2& p) {
     return "(" + io::to_text(p.x(), 6) + ", " + io::to_text(p.y(), 6) + ")";
   };
@@ -85,13 +86,14 @@ void check_size(const std::vector<Ring>& rings, const Region& domain, const std:
   const double size = (box.upper - box.lower).maxCoeff();
   const double beyond =
       std::max((box.lower - part.lower).maxCoeff(), (part.upper - box.upper).maxCoeff());
-  const std::string words = "its outline reaches " + box_words(part) + ", the design domain of '" +
-                            body + "' " + box_words(box) +
-                            "; coordinates are those of the exported design, in the unit of the "
-                            "file";
-  if (beyond > kBeyond * size) throw Error::input(words + ", and a part lies within the domain");
-  if ((part.upper - part.lower).maxCoeff() < kSmallest * size)
-    throw Error::input(words + "; is its unit right?");
+  const std::string found = "its outline extends " + box_text(part) + ", the design domain of '" +
+                            body + "' extends " + box_text(box);
+  if (beyond > kOverhang * size)
+    throw Error::input(found +
+                       "; a part lies within the domain, in the coordinates of the exported design "
+                       "and in the unit of the file");
+  if ((part.upper - part.lower).maxCoeff() < kMinHoleArea * size)
+    throw Error::input(found + "; the outline is too small: check the unit of the file");
 }
 
 /// Moves points that nearly lie on a border onto the border: points that differ by rounding, and
@@ -117,7 +119,7 @@ class Snap {
       if (runs_along(ring[k], ring[(k + 1) % n])) along[k] = along[(k + 1) % n] = true;
     Ring out;
     for (std::size_t k = 0; k < n; ++k) {
-      const Vec2 at = nearest(ring[k], size_ * (along[k] ? kAlong : kRounding));
+      const Vec2 at = nearest(ring[k], size_ * (along[k] ? kArcTolerance : kRounding));
       if (out.empty() || at != out.back()) out.push_back(at);
     }
     while (out.size() > 1 && out.back() == out.front()) out.pop_back();
@@ -126,7 +128,7 @@ class Snap {
 
  private:
   bool runs_along(const Vec2& a, const Vec2& b) const {
-    const double near = kAlong * size_;
+    const double near = kArcTolerance * size_;
     if ((b - a).norm() < 20 * near) return false;
     return std::any_of(borders_.begin(), borders_.end(), [&](const Segment& s) {
       return distance(s, a) < near && distance(s, b) < near;
@@ -156,8 +158,8 @@ class Snap {
   std::vector<Segment> borders_;
 };
 
-std::string ring_words(const Ring& ring) {
-  return "the ring that begins at (" + io::to_text(ring.front().x(), 6) + ", " +
+std::string ring_text(const Ring& ring) {
+  return "the closed curve that begins at (" + io::to_text(ring.front().x(), 6) + ", " +
          io::to_text(ring.front().y(), 6) + ") m";
 }
 
@@ -181,15 +183,15 @@ std::vector<Nested> nested(const std::vector<Ring>& rings) {
     const Region alone = region_of({ring});
     out.push_back({alone.outer, bounds_of(ring), area(alone), {}});
   }
-  constexpr double kTouches = 1e-6;  // relative tolerance of areas, in the smaller area
+  constexpr double kContactArea = 1e-6;  // relative tolerance of areas, in the smaller area
   for (std::size_t i = 0; i < out.size(); ++i)
     for (std::size_t j = 0; j < out.size(); ++j) {
       const bool smaller = out[i].size < out[j].size || (out[i].size == out[j].size && i > j);
       if (i == j || !smaller || are_apart(out[i].box, out[j].box)) continue;
       const double shared = area(unite({&out[i].ring, 1}, {out[j].ring, {}}, {}));
-      if (shared < kTouches * out[i].size) continue;
-      if (shared < (1 - kTouches) * out[i].size)
-        throw Error::input(ring_words(out[i].ring) + " crosses another one");
+      if (shared < kContactArea * out[i].size) continue;
+      if (shared < (1 - kContactArea) * out[i].size)
+        throw Error::input(ring_text(out[i].ring) + " crosses another closed curve");
       out[i].within.push_back(j);
     }
   return out;
@@ -208,9 +210,9 @@ std::vector<Region> pieces_of(const std::vector<Nested>& all, const Region& doma
           std::find(hole.within.begin(), hole.within.end(), i) != hole.within.end())
         drawn.holes.emplace_back(hole.ring.rbegin(), hole.ring.rend());
     std::vector<Region> clipped = unite({&drawn.outer, 1}, domain, drawn.holes);
-    constexpr double kSame = 1e-12;
+    constexpr double kSamePoint = 1e-12;
     if (clipped.size() == 1 && clipped[0].holes.size() == drawn.holes.size() &&
-        std::abs(area(clipped) - area(drawn)) <= kSame * area(drawn))
+        std::abs(area(clipped) - area(drawn)) <= kSamePoint * area(drawn))
       clipped = {drawn};
     for (Region& piece : clipped) out.push_back(std::move(piece));
   }
@@ -238,9 +240,9 @@ std::vector<Region> read_part(const std::string& path, const Scene& scene,
     const std::vector<Nested> all = nested(rings);
     std::vector<Region> out = pieces_of(all, domain);
     const double drawn = area_of(all), lost = drawn - area(out);
-    if (!(lost < kBeyond * drawn))
-      throw Error::input(io::to_text(100 * lost / drawn, 3) + " % of its area, " +
-                         io::to_text(drawn, 4) + " m2, lie outside of the design domain of '" +
+    if (!(lost < kOverhang * drawn))
+      throw Error::input(io::to_text(100 * lost / drawn, 3) + " % of its area of " +
+                         io::to_text(drawn, 4) + " m2 lie outside of the design domain of '" +
                          design.body + "'");
     return out;
   } catch (const Error& error) {

@@ -8,7 +8,7 @@ namespace flexmorph::cases {
 namespace {
 
 fem::TemperatureRise rise_of(const BodyHeat& heat) {
-  return {fem::profile_of(heat.profile), heat.rise.value, heat.start, heat.settle};
+  return {fem::profile_of(heat.profile), heat.rise.value, heat.start, heat.duration};
 }
 
 std::function<fem::Motion(double)> temperature_of(const Scene& scene, const BodyHeat& heat) {
@@ -26,11 +26,11 @@ void add_heat(const Scene& scene, Mechanism& mechanism) {
       if (built.name == body.name) fem::heat(built, hot);
     const bool acts = heat.profile.empty() || fem::accelerates(rise_of(heat));
     if (heat.force && acts)
-      mechanism.model.add_link(std::make_unique<fem::ThermalForce>(
+      mechanism.model.add_force_element(std::make_unique<fem::ThermalForce>(
           "thermal force of " + body.name, body.name, hot, body.density * body.thickness));
     if (!heat.profile.empty())
-      for (const double t : fem::kinks(rise_of(heat)))
-        if (t < scene.time.end) mechanism.motion.kinks.push_back(t);
+      for (const double t : fem::discontinuities(rise_of(heat)))
+        if (t < scene.time.end) mechanism.motion.discontinuities.push_back(t);
   }
 }
 

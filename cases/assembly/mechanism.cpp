@@ -5,8 +5,8 @@
 #include "cases/assembly/build.h"
 #include "cases/assembly/heat.h"
 #include "cases/assembly/joints.h"
+#include "cases/assembly/reservoir.h"
 #include "cases/assembly/start.h"
-#include "cases/assembly/stored.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "fem/dynamics/starts/rigid_motion.h"
@@ -100,32 +100,32 @@ double slide_of(const Scene& scene, const Joint& frame) {
 /// of the moving root.
 void add_frame(const Scene& scene, const Joint& joint, double finer, Mechanism& out) {
   const Body& body = scene.body(joint.body);
-  fem::Carrier carrier;
+  fem::DrivenFrame driven_frame;
   if (joint.on_rigid_body()) {
     const Anchor& b = joint.b;
-    carrier = fem::Carrier(b.body, b.point, b.angle);
+    driven_frame = fem::DrivenFrame(b.body, b.point, b.angle);
     out.model.add_joint(fem::make_edge_weld(joint.name, joint.body, joint.edge,
                                             {b.body, b.point, b.angle, {}}, joint.mode));
   } else {
-    carrier = hub_drive(scene, joint);
+    driven_frame = hub_drive(scene, joint);
     out.model.add_joint(
-        fem::make_weld(joint.name, joint.body, joint.edge, carrier.drive(), joint.mode));
+        fem::make_weld(joint.name, joint.body, joint.edge, driven_frame.drive(), joint.mode));
   }
   if (joint.edge == "free_end" || !body.row->lines) return;
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  fem::Growth growth{joint.body, carrier, kNever, 0, joint.line, slide_of(scene, joint)};
+  fem::MovingRoot growth{joint.body, driven_frame, kNever, 0, joint.line, slide_of(scene, joint)};
   if (body.flow && body.on_cells()) {
     growth.cell = finer * body.cell_length();
     growth.max_length = kLongestCell * growth.cell;
     growth.min_length = kShortestCell * growth.cell;
-  } else if (body.flow && !body.is_even()) {
+  } else if (body.flow && !body.has_uniform_mesh()) {
     growth.max_length = finer * body.flow->max_length;
     growth.min_length = finer * body.flow->min_length;
   } else if (body.mesh_changes()) {
     growth.max_length = finer * body.lines.front().max_length;
     growth.min_length = finer * body.lines.front().min_length;
   }
-  out.growths.push_back(growth);
+  out.moving_roots.push_back(growth);
 }
 
 /// Adds one joint for all held edges of a body, so that a corner of two held edges is held once.
@@ -143,7 +143,7 @@ void add_holds(const Scene& scene, const Body& body, fem::Model& model) {
 
 /// Sets the placement of bodies without material lines (beams) in a scene that is no mechanism:
 /// they move with their hubs or stay where the case places them.
-void place_alone(const Scene& scene, fem::MotionSettings& motion) {
+void location_alone(const Scene& scene, fem::MotionSettings& motion) {
   struct Frame {
     std::string body;
     fem::FrameDrive drive;
@@ -162,8 +162,8 @@ void place_alone(const Scene& scene, fem::MotionSettings& motion) {
         {body.name, rides ? hub_drive(scene, *hub) : at_rest(pose.origin, pose.angle), pose.line});
   }
   if (frames.empty()) return;
-  motion.placement = [frames](double t) {
-    std::vector<fem::Placed> out;
+  motion.body_poses = [frames](double t) {
+    std::vector<fem::BodyPose> out;
     for (const Frame& f : frames) out.push_back({f.body, f.drive(t), f.line});
     return out;
   };
@@ -233,11 +233,11 @@ namespace {
 /// Adds the joints of a scene.
 /// @param finer  returns the length of the elements of this run relative to those of the scene
 void add_joints(const Scene& scene, const std::function<double(const Body&)>& finer,
-                const FindPlace& place, Mechanism& out) {
+                const FindLocation& location, Mechanism& out) {
   for (const Joint& joint : scene.joints) {
     if (joint.holds_frame())
       add_frame(scene, joint, finer(scene.body(joint.body)), out);
-    else if (auto made = make_joint(scene, joint, place, false))
+    else if (auto made = make_joint(scene, joint, location, false))
       out.model.add_joint(std::move(made));
   }
   for (const Body& body : scene.bodies) add_holds(scene, body, out.model);
@@ -258,15 +258,16 @@ void set_motion(const Scene& scene, fem::MotionSettings& out) {
 void set_step(const Scene& scene, double step, fem::MotionSettings& motion) {
   motion.step = step;
   motion.adaptive.reset();
-  motion.kinks.clear();
+  motion.discontinuities.clear();
   if (scene.time.tolerance && step == scene.time.step) {
     motion.adaptive = fem::AdaptiveStep{};
     motion.adaptive->tolerance = *scene.time.tolerance;
     motion.adaptive->largest = scene.time.largest_step;
-    if (scene.time.start == Start::hub_at_rest) motion.kinks = {scene.time.spin_up};
+    if (scene.time.start == Start::hub_at_rest) motion.discontinuities = {scene.time.spin_up};
   }
   for (const Drive& drive : scene.drives)
-    motion.kinks.insert(motion.kinks.end(), drive.kinks.begin(), drive.kinks.end());
+    motion.discontinuities.insert(motion.discontinuities.end(), drive.discontinuities.begin(),
+                                  drive.discontinuities.end());
 }
 
 Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh,
@@ -286,23 +287,24 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh,
   };
   for (const RigidBody& body : scene.rigid_bodies)
     fem::add_rigid_body(out.model, mechanism_body(body), scene.gravity_law(),
-                        stored_in(scene, body.name));
+                        reservoirs_in(scene, body.name));
   for (const Body& body : scene.bodies) add_body(scene, body, elements(body), out.model);
-  const FindPlace place = [](const Anchor& a) {
-    return fem::MarkerPlace{a.body, a.point, a.angle, {}};
+  const FindLocation location = [](const Anchor& a) {
+    return fem::MarkerLocation{a.body, a.point, a.angle, {}};
   };
-  for (const Spring& spring : scene.springs) out.model.add_link(make_link(scene, spring, place));
-  for (auto& load : rigid_loads(scene)) out.model.add_link(std::move(load));
+  for (const Spring& spring : scene.springs)
+    out.model.add_force_element(make_force_element(scene, spring, location));
+  for (auto& load : rigid_loads(scene)) out.model.add_force_element(std::move(load));
   add_outlets(scene, out.model);
-  add_joints(scene, finer, place, out);
+  add_joints(scene, finer, location, out);
   set_motion(scene, out.motion);
   if (scene.is_mechanism()) {
     const fem::RigidKinematics kinematics = rigid ? *rigid : rigid_kinematics(scene);
     fem::RigidMotion motion(kinematics);
-    out.motion.placement = fem::rigid_configuration(kinematics);
+    out.motion.body_poses = fem::rigid_configuration(kinematics);
     set_start(scene, &motion, out);
   } else {
-    place_alone(scene, out.motion);
+    location_alone(scene, out.motion);
     set_start(scene, nullptr, out);
   }
   if (scene.has_heat()) add_heat(scene, out);

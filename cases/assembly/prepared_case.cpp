@@ -32,10 +32,10 @@ const std::vector<mmc::BodyProblem>& PreparedCase::design_problems() const {
   return *parts_->problems;
 }
 
-const Extent& PreparedCase::extent() const {
+const ResourceEstimate& PreparedCase::resource_estimate() const {
   const std::lock_guard guard(parts_->lock);
-  if (!parts_->extent) parts_->extent = extent_of(parts_->scene);
-  return *parts_->extent;
+  if (!parts_->resource_estimate) parts_->resource_estimate = estimate_resources(parts_->scene);
+  return *parts_->resource_estimate;
 }
 
 PreparedCase::Counts PreparedCase::counts() const {

@@ -33,7 +33,7 @@ class PreparedCase {
   /// @throws Error as build_problems()
   const std::vector<mmc::BodyProblem>& design_problems() const;
   /// Returns the estimated size of a run: steps, memory and disk space.
-  const Extent& extent() const;
+  const ResourceEstimate& resource_estimate() const;
 
   /// Numbers of objects that have been built.
   struct Counts {
@@ -51,7 +51,7 @@ class PreparedCase {
     std::map<MeshChoice, Mechanism> mechanisms;
     std::optional<fem::RigidKinematics> rigid;
     std::optional<std::vector<mmc::BodyProblem>> problems;
-    std::optional<Extent> extent;
+    std::optional<ResourceEstimate> resource_estimate;
     Counts counts;
   };
   std::unique_ptr<Parts> parts_;

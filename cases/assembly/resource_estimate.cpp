@@ -16,19 +16,19 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr double kNumber = 8;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+constexpr double kBytesPerNumber = 8;
 
-// Measured sizes in bytes, see extent_of(): the program with its libraries, a report, a number in a
-// table; in a frame for ParaView the header, a point in the plane and a point in space; a cell and
-// a component in a frame of a design, a cell in its exports; a point in a picture of a body in
-// space.
+// Measured sizes in bytes, see estimate_resources(): the program with its libraries, a report, a
+// number in a table; in a frame for ParaView the header, a point in the plane and a point in space;
+// a cell and a component in a frame of a design, a cell in its exports; a point in a picture of a
+// body in space.
 constexpr double kProgram = 36e6, kReport = 5e5, kCsvNumber = 17;
 constexpr double kFrame = 1600, kPlanePoint = 19, kSpacePoint = 34;
 constexpr double kDesignCell = 25, kDesignComponent = 900, kDesignExports = 250,
                  kPicturePoint = 190;
 // An entry of a tangent with its indices, in all copies that assembly and solvers keep.
-constexpr double kEntry = 40;
+constexpr double kBytesPerEntry = 40;
 // A cell of a design: scale factors, topology description function and derivatives.
 constexpr double kCell = 1500;
 // Number of tangents whose memory a body meshed by cells needs, because its factorizations are
@@ -37,9 +37,9 @@ constexpr double kCellCopies = 6;
 // Number of copies of the load vectors of a design: forces, displacements and solver work space.
 constexpr double kLoadCopies = 9;
 
-double sum_of(const std::vector<Share>& shares) {
+double sum_of(const std::vector<ResourceItem>& shares) {
   double sum = 0;
-  for (const Share& each : shares) sum += each.bytes;
+  for (const ResourceItem& each : shares) sum += each.bytes;
   return sum;
 }
 
@@ -47,7 +47,7 @@ double sum_of(const std::vector<Share>& shares) {
 /// include elements that are inserted while material flows in.
 std::array<double, 2> elements_of(const Scene& scene, const Body& body, double finer) {
   double along = body.elements[0];
-  if (body.flow && !body.is_even()) {
+  if (body.flow && !body.has_uniform_mesh()) {
     const double grown = body.longest(scene.time.end) - body.length;
     along += std::max(
         0.0, grown / (body.on_cells() ? body.cell_length() : 0.75 * body.flow->max_length));
@@ -70,14 +70,15 @@ double moving_bytes(const Scene& scene, const Body& body, double finer) {
   const double narrow = std::min(n[0], n[1]) + 1;
   const double fill = neighbours * each * (1 + std::log2(1 + narrow));
   const double elements = n[0] * std::max(1.0, n[1]), size = corners * each;
-  return rows * (neighbours * each * kEntry + kNumber * fill) + elements * kNumber * size * size;
+  return rows * (neighbours * each * kBytesPerEntry + kBytesPerNumber * fill) +
+         elements * kBytesPerNumber * size * size;
 }
 
 /// Returns the memory of two dense matrices of a body, see fem::thermal_matrices() [bytes].
 double thermal_bytes(const Scene& scene, const Body& body) {
   const std::array<double, 2> n = elements_of(scene, body, 1);
   const double vectors = (n[0] + 1) * (n[1] + 1) * node_unknowns(body) / body.dim();
-  return 2 * kNumber * vectors * vectors;
+  return 2 * kBytesPerNumber * vectors * vectors;
 }
 
 /// Returns the refinement factor of the finest mesh in any motion of the scene.
@@ -96,7 +97,8 @@ double columns_of(const Scene& scene) {
   out += 4.0 * static_cast<double>(scene.bodies.size());
   out += 3.0 * static_cast<double>(scene.rigid_bodies.size() + scene.observed.size());
   for (const Joint& joint : scene.joints) out += joint.named ? 3 : 0;
-  for (const Measure& m : scene.measures) out += 2.0 * static_cast<double>(m.quantities.size());
+  for (const MeasureRequest& m : scene.measures)
+    out += 2.0 * static_cast<double>(m.quantities.size());
   return out;
 }
 
@@ -119,7 +121,7 @@ double frame_bytes(const Scene& scene) {
   return out + kFrame * static_cast<double>(scene.rigid_bodies.size());
 }
 
-void add_course(const Scene& scene, Extent& out) {
+void add_course(const Scene& scene, ResourceEstimate& out) {
   const TimeSpan& time = scene.time;
   if (scene.statics) {
     const bool load = scene.statics->path == fem::StaticSettings::Path::load;
@@ -139,7 +141,7 @@ void add_course(const Scene& scene, Extent& out) {
   }
 }
 
-void add_motions(const Scene& scene, Extent& out) {
+void add_motions(const Scene& scene, ResourceEstimate& out) {
   for (const Body& body : scene.bodies)
     out.memory.push_back({"the mesh of '" + body.name + "'", "body." + body.name + ".elements",
                           moving_bytes(scene, body, 1)});
@@ -147,19 +149,19 @@ void add_motions(const Scene& scene, Extent& out) {
     if (body.heat && body.heat->force)
       out.memory.push_back({"the thermal force of '" + body.name + "'",
                             "body." + body.name + ".elements", thermal_bytes(scene, body)});
-  if (scene.judges_on_cells()) {
+  if (scene.verifies_on_cells()) {
     const Scene cells = on_cells(scene, scene.verify->cells);
     double bytes = 0;
     for (const Body& body : cells.bodies) bytes += kCellCopies * moving_bytes(cells, body, 1);
-    out.memory.push_back({"the verification", "verify.cells", bytes});
+    out.memory.push_back({"the verification mesh", "verify.cells", bytes});
   } else if (const double finer = finest(scene); finer > 1) {
     double bytes = 0;
     for (const Body& body : scene.bodies) bytes += moving_bytes(scene, body, finer);
     out.memory.push_back(
-        {"the verification", scene.verify->mesh ? "verify.mesh" : "verify.refine", bytes});
+        {"the verification mesh", scene.verify->mesh ? "verify.mesh" : "verify.refine", bytes});
   }
   const double numbers = out.motions * out.steps * columns_of(scene);
-  out.memory.push_back({"the table of steps", out.step_key, 2 * kNumber * numbers});
+  out.memory.push_back({"the table of steps", out.step_key, 2 * kBytesPerNumber * numbers});
   out.disk.push_back({"the table of steps", out.step_key, kCsvNumber * numbers});
   if (scene.in_space() && scene.output.plots)
     out.disk.push_back({"pictures of '" + scene.bodies[0].name + "'",
@@ -173,7 +175,7 @@ void add_motions(const Scene& scene, Extent& out) {
                       out.frames * frame_bytes(scene)});
 }
 
-void add_design(const Scene& scene, const BodyDesign& d, Extent& out) {
+void add_design(const Scene& scene, const BodyDesign& d, ResourceEstimate& out) {
   const Grid& g = d.grid;
   const std::string path = "design" + (scene.designs.size() > 1 ? "." + d.body : ""),
                     cell = path +
@@ -183,10 +185,10 @@ void add_design(const Scene& scene, const BodyDesign& d, Extent& out) {
   // The factorization is banded for moving bodies, and uses nested dissection for static plates.
   const double narrow = std::min(g.nx, g.ny);
   const double factor = scene.domain ? n * 24 * std::log2(1 + narrow) : n * (2.0 * g.ny + 5);
-  out.memory.push_back({name, cell, kNumber * factor + kCell * cells});
+  out.memory.push_back({name, cell, kBytesPerNumber * factor + kCell * cells});
   if (scene.esl)
     out.memory.push_back({"the loads of '" + d.body + "'", "esl.every",
-                          kNumber * kLoadCopies * n * scene.esl->count(scene.time.end)});
+                          kBytesPerNumber * kLoadCopies * n * scene.esl->count(scene.time.end)});
   const double components = d.n_components();
   out.disk.push_back({"exports of '" + d.body + "'", cell, kDesignExports * cells});
   const double every = scene.output.vtk ? scene.output.design_every : 0;
@@ -208,7 +210,7 @@ double unused_mapped() {
 /// Returns the memory limit of the process and of its control group [bytes]; infinite without
 /// limits.
 double allowed_memory() {
-  double out = kAny;
+  double out = kUnlimited;
   if (rlimit limit{}; getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
     out = std::max(0.0, static_cast<double>(limit.rlim_cur) - unused_mapped());
   std::ifstream group("/sys/fs/cgroup/memory.max");
@@ -218,24 +220,24 @@ double allowed_memory() {
 
 /// Refuses items whose total exceeds the available amount.
 /// @throws Error (input) at the key of the largest item.
-void refuse_more(const Scene& scene, const std::vector<Share>& shares, double there,
+void refuse_more(const Scene& scene, const std::vector<ResourceItem>& shares, double there,
                  const std::string& what, const std::string& where) {
   const double bytes = sum_of(shares);
   if (!(bytes > there)) return;
-  const Share& most = *std::ranges::max_element(shares, {}, &Share::bytes);
-  scene.refuse(most.key, "the run takes about " + bytes_text(bytes) + what + ", " +
-                             bytes_text(most.bytes) + " of it for " + most.what + "; " + where +
+  const ResourceItem& most = *std::ranges::max_element(shares, {}, &ResourceItem::bytes);
+  scene.refuse(most.key, "the run needs about " + bytes_text(bytes) + what + ", including " +
+                             bytes_text(most.bytes) + " for " + most.what + "; " + where +
                              bytes_text(there));
 }
 
 }  // namespace
 
-double Extent::memory_bytes() const { return sum_of(memory); }
+double ResourceEstimate::memory_bytes() const { return sum_of(memory); }
 
-double Extent::disk_bytes() const { return sum_of(disk); }
+double ResourceEstimate::disk_bytes() const { return sum_of(disk); }
 
-Extent extent_of(const Scene& scene) {
-  Extent out;
+ResourceEstimate estimate_resources(const Scene& scene) {
+  ResourceEstimate out;
   out.memory.push_back({"the program", "title", kProgram});
   out.disk.push_back({"the report", "title", kReport});
   out.iterations = 1.0 * scene.optimizer.max_iterations * static_cast<double>(scene.designs.size());
@@ -253,7 +255,7 @@ Extent extent_of(const Scene& scene) {
 
 Machine this_machine(const std::string& directory) {
   namespace fs = std::filesystem;
-  Machine out{kAny, kAny};
+  Machine out{kUnlimited, kUnlimited};
   const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
   if (pages > 0 && size > 0) out.memory = static_cast<double>(pages) * static_cast<double>(size);
   out.memory = std::min(out.memory, allowed_memory());
@@ -265,18 +267,23 @@ Machine this_machine(const std::string& directory) {
   return out;
 }
 
-void require_room(const Scene& scene, const Machine& machine) {
-  const Extent extent = extent_of(scene);
-  if (extent.steps > kMostSteps)
-    scene.refuse(extent.step_key, io::to_text(extent.steps, 3) + " steps; the most are " +
-                                      io::to_text(kMostSteps, 3));
-  refuse_more(scene, extent.memory, machine.memory, " of memory", "this machine has ");
-  refuse_more(scene, extent.disk, machine.disk, " of disk", "free are ");
+void require_disk(const Scene& scene, const Machine& machine) {
+  const ResourceEstimate resource_estimate = estimate_resources(scene);
+  if (resource_estimate.steps > kMaxSteps)
+    scene.refuse(resource_estimate.step_key,
+                 io::to_text(resource_estimate.steps, 3) +
+                     " steps are needed; the largest number of steps is " +
+                     io::to_text(kMaxSteps, 3));
+  refuse_more(scene, resource_estimate.memory, machine.memory, " of memory", "this machine has ");
+  refuse_more(scene, resource_estimate.disk, machine.disk, " of disk space",
+              "the free disk space is ");
 }
 
-std::string out_of_memory_words(const Extent& extent) {
-  return "memory ran out: the run was to take about " + bytes_text(extent.memory_bytes()) +
-         " (within a factor of two), and there are " + bytes_text(this_machine().memory);
+std::string out_of_memory_text(const ResourceEstimate& resource_estimate) {
+  return "the memory is exhausted: the estimated memory of the run is " +
+         bytes_text(resource_estimate.memory_bytes()) +
+         " (within a factor of two), and the available memory is " +
+         bytes_text(this_machine().memory);
 }
 
 std::string bytes_text(double bytes) {

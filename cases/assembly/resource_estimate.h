@@ -8,7 +8,7 @@
 namespace flexmorph::cases {
 
 /// An item of the resource estimate: the memory or disk space of one component of a run.
-struct Share {
+struct ResourceItem {
   std::string what;  ///< Name for messages, such as "the design of 'plate'".
   std::string key;   ///< Key of the case that determines the size, see Scene::refuse().
   double bytes = 0;  ///< Size [bytes].
@@ -16,7 +16,7 @@ struct Share {
 
 /// The size of a run, estimated from its scene before anything is built. All counts are doubles,
 /// because they are exact up to 2^53 and no case can make them overflow.
-struct Extent {
+struct ResourceEstimate {
   double steps = 0;      ///< Number of steps of a motion (adaptive: lower bound) or of a path.
   std::string step_key;  ///< Key of the case that determines the number of steps.
   double frames = 0;     ///< Number of frames of the motion for ParaView.
@@ -24,8 +24,8 @@ struct Extent {
   /// Number of motions that a run keeps: with designs also those of uniform material and of finer
   /// meshes.
   double motions = 1;
-  double iterations = 0;            ///< Upper bound of the number of iterations of all designs.
-  std::vector<Share> memory, disk;  ///< Items of memory and of disk space.
+  double iterations = 0;  ///< Upper bound of the number of iterations of all designs.
+  std::vector<ResourceItem> memory, disk;  ///< Items of memory and of disk space.
 
   /// Returns the total memory [bytes].
   double memory_bytes() const;
@@ -37,7 +37,7 @@ struct Extent {
 /// measured ones for the shipped cases, also on finer meshes
 /// (tests/cases/scene/resource_estimate_test.cpp). Files of designs are counted for all permitted
 /// iterations, files of arc-length paths for all permitted equilibria.
-Extent extent_of(const Scene& scene);
+ResourceEstimate estimate_resources(const Scene& scene);
 
 /// Memory and disk space that a run may use; infinite where the system gives no limit.
 struct Machine {
@@ -51,10 +51,10 @@ Machine this_machine(const std::string& directory = "");
 /// Checks that a run fits the limits of a machine.
 /// @throws Error (input) at the key that determines the size when a run has more steps than can be
 ///         counted, or needs more memory or disk space than available.
-void require_room(const Scene& scene, const Machine& machine);
+void require_disk(const Scene& scene, const Machine& machine);
 
 /// Returns the message for a run that exhausts the memory: the estimate and the available memory.
-std::string out_of_memory_words(const Extent& extent);
+std::string out_of_memory_text(const ResourceEstimate& resource_estimate);
 
 /// Returns a number of bytes as text, such as "1.2 GB".
 std::string bytes_text(double bytes);

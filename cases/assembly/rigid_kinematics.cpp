@@ -31,7 +31,7 @@ std::optional<fem::ReferencePose> own_pose(const Scene& scene, const Body& body)
     if (joint.on_rigid_body())
       for (const RigidBody& b : scene.rigid_bodies)
         if (b.name == joint.b.body)
-          return fem::ReferencePose{start_place(scene, joint.b), b.angle + joint.b.angle, line,
+          return fem::ReferencePose{start_location(scene, joint.b), b.angle + joint.b.angle, line,
                                     curvature};
     const Hub& hub = hub_of(scene, joint);
     return fem::ReferencePose{hub.position, hub.angle + joint.angle, line, curvature};
@@ -53,8 +53,8 @@ fem::ReferencePose start_pose(const Scene& scene, const Body& body) {
   return fem::reference_pose(bodies, welds, body.name);
 }
 
-Vec2 undeformed_place(const Body& body, const Vec2& material) {
-  return body.arc == 0 ? material : fem::place_on_arc(body.arc / body.length, material);
+Vec2 undeformed_location(const Body& body, const Vec2& material) {
+  return body.arc == 0 ? material : fem::location_on_arc(body.arc / body.length, material);
 }
 
 namespace {
@@ -85,11 +85,11 @@ fem::MechanismBody mechanism_body(const RigidBody& body) {
           .angle = body.angle,
           .velocity = body.velocity,
           .angular_velocity = body.angular_velocity,
-          .source = body.place + ": rigid_body."};
+          .source = body.location + ": rigid_body."};
 }
 
-std::vector<std::unique_ptr<fem::Link>> rigid_loads(const Scene& scene) {
-  std::vector<std::unique_ptr<fem::Link>> out;
+std::vector<std::unique_ptr<fem::ForceElement>> rigid_loads(const Scene& scene) {
+  std::vector<std::unique_ptr<fem::ForceElement>> out;
   for (size_t i = 0; i < scene.loads.size(); ++i) {
     const BodyLoad& load = scene.loads[i];
     const auto is_loaded = [&](const RigidBody& body) { return body.name == load.body; };
@@ -109,13 +109,13 @@ class MechanismOfScene {
     out_.bends = !scene.bodies.empty();
     for (const RigidBody& b : scene.rigid_bodies) out_.bodies.push_back(mechanism_body(b));
     for (const Body& b : scene.bodies) out_.bodies.push_back(rigid_plate(b));
-    const FindPlace place = [&](const Anchor& anchor) { return place_of(anchor); };
+    const FindLocation location = [&](const Anchor& anchor) { return location_of(anchor); };
     for (const Spring& spring : scene.springs)
-      out_.links.push_back(make_link(scene, spring, place));
-    for (auto& load : rigid_loads(scene)) out_.links.push_back(std::move(load));
+      out_.force_elements.push_back(make_force_element(scene, spring, location));
+    for (auto& load : rigid_loads(scene)) out_.force_elements.push_back(std::move(load));
     for (const Joint& joint : scene.joints) {
       if (!joint.holds_frame())
-        add_joint(joint, place);
+        add_joint(joint, location);
       else if (joint.on_rigid_body())
         add_on_rigid_body(joint);
       else
@@ -132,7 +132,7 @@ class MechanismOfScene {
   Vec2 origin_of(const Body& body, const fem::ReferencePose& pose) const {
     for (const Joint& j : scene_.joints)
       if (j.body == body.name && j.edge == "free_end" && body.flow)
-        return j.on_rigid_body() ? start_place(scene_, j.b) : hub_drive(scene_, j)(0).origin;
+        return j.on_rigid_body() ? start_location(scene_, j.b) : hub_drive(scene_, j)(0).origin;
     return pose.origin + fem::rotation(pose.angle) * Vec2(longest(body) - pose.line, 0);
   }
 
@@ -147,7 +147,7 @@ class MechanismOfScene {
     const Vec2 end(longest(body), 0);
     for (const PointMass& m : scene_.point_masses)
       if (m.body == body.name)
-        plate.masses.push_back({m.mass, undeformed_place(body, m.point) - end});
+        plate.masses.push_back({m.mass, undeformed_location(body, m.point) - end});
     const fem::ReferencePose pose = start_pose(scene_, body);
     fem::MechanismBody out = mechanism_body(plate);
     out.position = origin_of(body, pose);
@@ -162,14 +162,14 @@ class MechanismOfScene {
   }
 
   /// Returns the location of an anchor in the axes of its rigid body.
-  fem::MarkerPlace place_of(const Anchor& anchor) const {
+  fem::MarkerLocation location_of(const Anchor& anchor) const {
     Vec2 point = anchor.point;
     for (const Body& b : scene_.bodies)
-      if (b.name == anchor.body) point = undeformed_place(b, point) - Vec2(longest(b), 0);
+      if (b.name == anchor.body) point = undeformed_location(b, point) - Vec2(longest(b), 0);
     return {anchor.body, point, anchor.angle, {}};
   }
 
-  void add_joint(const Joint& joint, const FindPlace& place) {
+  void add_joint(const Joint& joint, const FindLocation& location) {
     fem::MechanismJoint out;
     if (!joint.laws.empty()) {
       const Law& law = joint.laws[0];
@@ -178,21 +178,21 @@ class MechanismOfScene {
       out.prescribes = true;
       if (joint.row->coordinate) {
         out.coordinate = joint.row->coordinate;
-        out.a = place(completed(scene_, joint.a, joint.b));
-        out.b = place(completed(scene_, joint.b, joint.a));
+        out.a = location(completed(scene_, joint.a, joint.b));
+        out.b = location(completed(scene_, joint.b, joint.a));
       }
     }
     const bool is_known = !out.is_driven || scene_.motion_of(joint.laws[0]);
-    if (is_known) out.joint = make_joint(scene_, joint, place, true);
+    if (is_known) out.joint = make_joint(scene_, joint, location, true);
     if (out.joint || !is_known) out_.joints.push_back(std::move(out));
   }
 
   /// Returns the location of the held line in the axes of its rigid body.
-  fem::MarkerPlace line_of(const Joint& joint, const Body& body) const {
-    fem::MarkerPlace out{joint.body, {0, 0}, 0, {}};
+  fem::MarkerLocation line_of(const Joint& joint, const Body& body) const {
+    fem::MarkerLocation out{joint.body, {0, 0}, 0, {}};
     if (joint.edge == "root" && body.flow) return out;
     if (joint.edge == "free_end") {
-      out.point = undeformed_place(body, {longest(body), 0}) - Vec2(longest(body), 0);
+      out.point = undeformed_location(body, {longest(body), 0}) - Vec2(longest(body), 0);
       out.angle = body.arc;
     } else {
       const std::vector<double> lines =
@@ -216,7 +216,7 @@ class MechanismOfScene {
   }
 
   /// Returns the root line of a body with material flow, which moves along the axis of the body.
-  static fem::MarkerPlace fed(fem::MarkerPlace line, const Body& body) {
+  static fem::MarkerLocation fed(fem::MarkerLocation line, const Body& body) {
     line.along = [body](double t) {
       const fem::Motion m = body.length_motion(t);
       return fem::Motion{-m.value, -m.rate, -m.acceleration};
@@ -248,8 +248,10 @@ class MechanismOfScene {
   void add_in_hub(const Joint& joint) {
     const Body& body = scene_.body(joint.body);
     if (slides(joint, body) || (flows(joint, body) && !is_known(*body.flow)))
-      throw Error::input("joint '" + joint.name + "': a line that slides in a driven hub");
-    const fem::MarkerPlace line = line_of(joint, body);
+      throw Error::input("joint '" + joint.name +
+                         "': a hub cannot hold a line whose material coordinate is unknown; "
+                         "hold the line by a rigid body");
+    const fem::MarkerLocation line = line_of(joint, body);
     const fem::FrameDrive hub = hub_drive(scene_, joint);
     const auto point = [hub](double t) {
       const fem::FrameMotion f = hub(t);
@@ -283,8 +285,8 @@ void follow_trajectory(Scene& scene) {
   std::vector<std::string> names;
   for (const Drive& d : scene.drives)
     if (d.from_trajectory) names.push_back(d.name);
-  if (names.empty()) throw Error::input("no [[drive]] has from = \"trajectory\"");
-  const Trajectory& path = *scene.trajectory;
+  if (names.empty()) throw Error::input("at least one [[drive]] must have from = \"trajectory\"");
+  const TargetTrajectory& path = *scene.trajectory;
   const fem::RigidTrajectory trajectory{path.body, scene.motion_of(path.x), scene.motion_of(path.y),
                                         scene.motion_of(path.angle), scene.time.end};
   auto motions = fem::inverse_kinematics(rigid_mechanism(scene), trajectory, names);

@@ -13,12 +13,12 @@ namespace flexmorph::cases {
 fem::ReferencePose start_pose(const Scene& scene, const Body& body);
 /// Returns the location of a material point in the axes of the undeformed body at its root [m]. It
 /// differs from the material coordinates only for a beam that is an arc.
-Vec2 undeformed_place(const Body& body, const Vec2& material);
+Vec2 undeformed_location(const Body& body, const Vec2& material);
 
 /// Returns the data of a rigid body of the scene, its point masses included.
 fem::MechanismBody mechanism_body(const RigidBody& body);
 /// Returns the force elements of the loads on rigid bodies.
-std::vector<std::unique_ptr<fem::Link>> rigid_loads(const Scene& scene);
+std::vector<std::unique_ptr<fem::ForceElement>> rigid_loads(const Scene& scene);
 
 /// Returns the bodies, joints, springs and loads of a planar scene with rigid plates. A joint whose
 /// drive follows from the trajectory is empty until follow_trajectory() has computed the drive.

@@ -40,18 +40,18 @@ VectorXd spread(const Grid& fine, int n, const VectorXd& all) {
 }  // namespace
 
 SceneMotion::SceneMotion(const PreparedCase& prepared, const Settings& settings,
-                         std::function<bool()> go_on)
+                         std::function<bool()> keep_running)
     : prepared_(prepared),
       scene_(prepared.scene()),
       settings_(settings),
-      go_on_(std::move(go_on)) {}
+      keep_running_(std::move(keep_running)) {}
 
 int SceneMotion::coarse(size_t design) const {
   const double cell = settings_.cell;
   return cell > 0 ? static_cast<int>(std::lround(cell / scene_.designs[design].grid.dx())) : 1;
 }
 
-Mechanism SceneMotion::mechanism_with(std::span<const mmc::CellFactors> factors) const {
+Mechanism SceneMotion::mechanism_with(std::span<const mmc::CellScaleFactors> factors) const {
   MeshChoice mesh;
   mesh.cells = 1;
   mesh.coarse = coarse(0);
@@ -77,8 +77,8 @@ fem::MotionObjective SceneMotion::objective_of(const mmc::MotionRow& row,
   if (name == "peak_strain_energy")
     return {fem::measure_strain_energy(), Times::stops, mmc::kPeakExponent};
   if (name == "trajectory_error") {
-    const Trajectory& t = *scene_.trajectory;
-    return {fem::measure_place_error(t.body, {scene_.motion_of(t.x), scene_.motion_of(t.y)}),
+    const TargetTrajectory& t = *scene_.trajectory;
+    return {fem::measure_location_error(t.body, {scene_.motion_of(t.x), scene_.motion_of(t.y)}),
             Times::steps, mmc::kPeakExponent};
   }
   const Body& body = scene_.body(scene_.designs[row.body].body);
@@ -89,17 +89,18 @@ fem::MotionObjective SceneMotion::objective_of(const mmc::MotionRow& row,
     const auto joint = std::find_if(scene_.joints.begin(), scene_.joints.end(), carries);
     return {fem::measure_joint_force(joint->name, body.name), Times::steps, mmc::kPeakExponent};
   }
-  const auto rides = [&](const fem::Growth& g) { return g.body == body.name; };
-  const auto growth = std::find_if(mechanism.growths.begin(), mechanism.growths.end(), rides);
+  const auto rides = [&](const fem::MovingRoot& g) { return g.body == body.name; };
+  const auto growth =
+      std::find_if(mechanism.moving_roots.begin(), mechanism.moving_roots.end(), rides);
   const Vec2 tip(body.longest(scene_.time.end), body.low() + 0.5 * body.width);
   return {fem::measure_deflection(body.name, tip, growth->hub, growth->line), Times::steps,
           mmc::kPeakExponent};
 }
 
 std::vector<mmc::MotionResponse::Value> SceneMotion::evaluate(
-    std::span<const mmc::MotionRow> rows, std::span<const mmc::CellFactors> factors) {
+    std::span<const mmc::MotionRow> rows, std::span<const mmc::CellScaleFactors> factors) {
   // The scale factors of void are a smooth offset, so that derivatives exist.
-  std::vector<mmc::CellFactors> of_motion(factors.begin(), factors.end());
+  std::vector<mmc::CellScaleFactors> of_motion(factors.begin(), factors.end());
   for (size_t d = 0; d < factors.size(); ++d) {
     const BodyDesign& design = scene_.designs[d];
     const auto offset = [](double at_void, VectorXd& x) {
@@ -108,13 +109,14 @@ std::vector<mmc::MotionResponse::Value> SceneMotion::evaluate(
     offset(design.stiffness_void, of_motion[d].stiffness);
     offset(design.mass_void, of_motion[d].mass);
   }
-  if (go_on_ && !go_on_()) throw StoppedMotion();
+  if (keep_running_ && !keep_running_()) throw StoppedMotion();
   const Mechanism mechanism = mechanism_with(of_motion);
   std::vector<fem::MotionObjective> objectives;
   for (const mmc::MotionRow& row : rows) objectives.push_back(objective_of(row, mechanism));
   ++motions_;
-  last_ = fem::motion_gradients(mechanism.model, mechanism.growths, mechanism.motion, objectives,
-                                {.checkpoints = settings_.checkpoints, .parameters = {}});
+  last_ =
+      fem::motion_gradients(mechanism.model, mechanism.moving_roots, mechanism.motion, objectives,
+                            {.checkpoints = settings_.checkpoints, .parameters = {}});
   std::vector<Value> out;
   for (const fem::MotionGradient& of : last_.of) {
     Value& value = out.emplace_back();
@@ -124,7 +126,8 @@ std::vector<mmc::MotionResponse::Value> SceneMotion::evaluate(
       const auto& bodies = mechanism.model.bodies();
       const auto body = std::find_if(bodies.begin(), bodies.end(),
                                      [&](const fem::Body& b) { return b.name == design.body; });
-      const fem::FactorSlopes& slopes = of.by_factors[static_cast<size_t>(body - bodies.begin())];
+      const fem::ScaleFactorGradient& slopes =
+          of.d_factors[static_cast<size_t>(body - bodies.begin())];
       value.slopes.push_back(
           {(1 - design.stiffness_void) * spread(design.grid, coarse(d), slopes.stiffness),
            (1 - design.mass_void) * spread(design.grid, coarse(d), slopes.mass)});
@@ -133,9 +136,9 @@ std::vector<mmc::MotionResponse::Value> SceneMotion::evaluate(
   return out;
 }
 
-std::vector<double> SceneMotion::sharp(std::span<const mmc::MotionRow> rows,
+std::vector<double> SceneMotion::crisp(std::span<const mmc::MotionRow> rows,
                                        std::span<const VectorXd> fractions) {
-  std::vector<mmc::CellFactors> factors;
+  std::vector<mmc::CellScaleFactors> factors;
   for (size_t d = 0; d < fractions.size(); ++d)
     factors.push_back(mmc::Ersatz::dynamic(fractions[d], scene_.designs[d].stiffness_void,
                                            scene_.designs[d].mass_void));
@@ -143,7 +146,7 @@ std::vector<double> SceneMotion::sharp(std::span<const mmc::MotionRow> rows,
   std::vector<fem::MotionObjective> objectives;
   for (const mmc::MotionRow& row : rows) objectives.push_back(objective_of(row, mechanism));
   ++motions_;
-  return fem::motion_values(mechanism.model, mechanism.growths, mechanism.motion, objectives);
+  return fem::motion_values(mechanism.model, mechanism.moving_roots, mechanism.motion, objectives);
 }
 
 }  // namespace flexmorph::cases

@@ -18,13 +18,14 @@ class SceneMotion final : public mmc::MotionResponse {
   };
   /// Creates the motion of a prepared case.
   /// @param prepared  must live longer
-  /// @param go_on  cancellation callback; evaluate() calls it before the motion and throws
+  /// @param keep_running  cancellation callback; evaluate() calls it before the motion and throws
   ///               StoppedMotion when it returns false
-  SceneMotion(const PreparedCase& prepared, const Settings& settings, std::function<bool()> go_on);
+  SceneMotion(const PreparedCase& prepared, const Settings& settings,
+              std::function<bool()> keep_running);
 
   std::vector<Value> evaluate(std::span<const mmc::MotionRow> rows,
-                              std::span<const mmc::CellFactors> factors) override;
-  std::vector<double> sharp(std::span<const mmc::MotionRow> rows,
+                              std::span<const mmc::CellScaleFactors> factors) override;
+  std::vector<double> crisp(std::span<const mmc::MotionRow> rows,
                             std::span<const VectorXd> fractions) override;
   int motions() const override { return motions_; }
 
@@ -33,13 +34,13 @@ class SceneMotion final : public mmc::MotionResponse {
 
  private:
   fem::MotionObjective objective_of(const mmc::MotionRow& row, const Mechanism& mechanism) const;
-  Mechanism mechanism_with(std::span<const mmc::CellFactors> factors) const;
+  Mechanism mechanism_with(std::span<const mmc::CellScaleFactors> factors) const;
   int coarse(size_t design) const;
 
   const PreparedCase& prepared_;
   const Scene& scene_;
   Settings settings_;
-  std::function<bool()> go_on_;
+  std::function<bool()> keep_running_;
   int motions_ = 0;
   fem::MotionGradients last_;
 };

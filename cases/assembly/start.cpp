@@ -5,10 +5,10 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kStill = 1e-6;  // [m/s]
+constexpr double kSpeedAtRest = 1e-6;  // [m/s]
 
 /// Largest time after the start at which fem::start_state() uses the rigid motion [s].
-constexpr double kAhead = 2e-4;
+constexpr double kTimeIncrement = 2e-4;
 
 /// Returns the start of a mechanism with start = "steady": in equilibrium under the inertia forces
 /// of the motion that drives determine (rigid if plates must bend to follow the drives), or in
@@ -16,17 +16,20 @@ constexpr double kAhead = 2e-4;
 /// @throws Error (input) where the mechanism moves and drives do not determine its motion.
 fem::Start steady_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (rigid.degrees_of_freedom() == 0)
-    return scene.bodies.empty() || !rigid.reaches(kAhead) ? fem::Start::rigid : fem::Start::steady;
-  if (!rigid.is_indeterminate() && rigid.start_speed() < kStill) return fem::Start::at_rest;
-  scene.refuse("time.start",
-               rigid.is_indeterminate()
-                   ? "\"steady\" needs a motion of the rigid mechanism, but its joints hold more "
-                     "than it has freedoms: start = \"rigid\""
-                   : "\"steady\" needs drives that determine all motion, or a mechanism at rest; "
-                     "drives leave " +
-                         std::to_string(rigid.degrees_of_freedom()) +
-                         " freedoms of this one, which sets off with " +
-                         io::to_text(rigid.start_speed(), 3) + " m/s: start = \"rigid\"");
+    return scene.bodies.empty() || !rigid.reaches(kTimeIncrement) ? fem::Start::rigid
+                                                                  : fem::Start::steady;
+  if (!rigid.is_indeterminate() && rigid.start_speed() < kSpeedAtRest) return fem::Start::at_rest;
+  scene.refuse(
+      "time.start",
+      rigid.is_indeterminate()
+          ? "\"steady\" needs a motion of the rigid mechanism, but its joints constrain more "
+            "than its degrees of freedom; set start = \"rigid\""
+          : "\"steady\" needs drives that determine the whole motion, or a mechanism at "
+            "rest; the drives leave " +
+                std::to_string(rigid.degrees_of_freedom()) +
+                " degrees of freedom undetermined, and the mechanism starts with a "
+                "velocity of " +
+                io::to_text(rigid.start_speed(), 3) + " m/s; set start = \"rigid\"");
 }
 
 /// Returns the start of a mechanism with start = "prestretched". It is at rest near equilibrium if
@@ -34,23 +37,25 @@ fem::Start steady_start(const Scene& scene, fem::RigidMotion& rigid) {
 /// @throws Error (input) where drives do not determine the motion and the mechanism is not at rest.
 fem::Start prestretched_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (rigid.degrees_of_freedom() == 0)
-    return rigid.reaches(kAhead) ? fem::Start::prestretched : fem::Start::rigid;
+    return rigid.reaches(kTimeIncrement) ? fem::Start::prestretched : fem::Start::rigid;
   if (rigid.is_indeterminate())
     throw Error::input(
-        "time.start: \"prestretched\" needs a motion of the rigid mechanism, but its joints hold "
-        "more than it has freedoms: start = \"rigid\"");
-  // A larger acceleration is the start of a swing. A smaller one vanishes in the equilibrium of the
-  // plates.
+        "time.start: \"prestretched\" needs a motion of the rigid mechanism, but its joints "
+        "constrain more than its degrees of freedom; set start = \"rigid\"");
+  // With a larger acceleration, the mechanism begins to swing. A smaller one vanishes in the
+  // equilibrium of the plates.
   const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
   const double speed = rigid.start_speed(), acceleration = rigid.start_acceleration();
-  if (speed < kStill && acceleration < nearly) return fem::Start::settled;
-  scene.refuse("time.start",
-               "\"prestretched\" puts a mechanism whose drives leave freedoms (" +
-                   std::to_string(rigid.degrees_of_freedom()) +
-                   " here) into its equilibrium at rest, but this one sets off with " +
-                   io::to_text(speed, 3) + " m/s and " + io::to_text(acceleration, 3) +
-                   " m/s²: bodies where they hang at rest and drives that begin at rest, or start "
-                   "= \"rigid\"");
+  if (speed < kSpeedAtRest && acceleration < nearly) return fem::Start::settled;
+  scene.refuse(
+      "time.start",
+      "\"prestretched\" needs a mechanism near its equilibrium at rest if drives leave degrees "
+      "of freedom undetermined (" +
+          std::to_string(rigid.degrees_of_freedom()) +
+          " here), but this mechanism starts with a velocity of " + io::to_text(speed, 3) +
+          " m/s and an acceleration of " + io::to_text(acceleration, 3) +
+          " m/s²; place the bodies in their equilibrium and let the drives begin at rest, "
+          "or set start = \"rigid\"");
 }
 
 /// A start and the text with the reason for its choice.
@@ -62,37 +67,42 @@ struct Choice {
 /// Returns the start of a mechanism if the program chooses it.
 Choice automatic_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (scene.bodies.empty()) return {fem::Start::rigid, ""};
-  const bool still = rigid.start_speed() < kStill;
+  const bool still = rigid.start_speed() < kSpeedAtRest;
   if (rigid.degrees_of_freedom() == 0) {
-    if (!rigid.reaches(kAhead))
-      return {fem::Start::rigid, "\"rigid\": bodies have to bend to follow the drives"};
+    if (!rigid.reaches(kTimeIncrement))
+      return {fem::Start::rigid, "\"rigid\", because bodies must bend to follow the drives"};
     if (still)
       return {fem::Start::at_rest,
-              "equilibrium at rest under weight and given forces: prescribed velocities are zero"};
-    return {fem::Start::steady, "\"steady\": prescribed velocities are not zero"};
+              "equilibrium at rest under weight and given forces, because all prescribed "
+              "velocities are zero"};
+    return {fem::Start::steady, "\"steady\", because prescribed velocities are not zero"};
   }
   if (rigid.is_indeterminate())
     return {fem::Start::rigid,
-            "\"rigid\": joints hold more than the mechanism has freedoms, so that no motion of the "
-            "rigid mechanism gives an equilibrium"};
+            "\"rigid\", because the joints constrain more than the degrees of freedom of the rigid "
+            "mechanism, so that none of its motions gives an equilibrium"};
   const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);
   if (still && rigid.start_acceleration() < nearly)
-    return {fem::Start::settled, "equilibrium at rest: nothing moves at the start"};
-  return {fem::Start::rigid,
-          "\"rigid\": drives leave freedoms to the mechanism, and it sets off at the start"};
+    return {fem::Start::settled, "equilibrium at rest, because nothing moves at the start"};
+  return {
+      fem::Start::rigid,
+      "\"rigid\", because drives leave degrees of freedom undetermined and the mechanism does not "
+      "start near an equilibrium at rest"};
 }
 
 /// Returns the start of bodies in hubs if the program chooses it.
 Choice automatic_start(const Scene& scene, Mechanism& mechanism) {
   if (scene.in_space())
-    return {fem::Start::prestretched, "\"prestretched\": there is no other in space"};
-  const fem::State x = fem::start_state(mechanism.model, mechanism.growths, 0, fem::Start::rigid,
-                                        mechanism.motion.placement);
+    return {fem::Start::prestretched,
+            "\"prestretched\", because it is the only start for bodies in space"};
+  const fem::State x = fem::start_state(mechanism.model, mechanism.moving_roots, 0,
+                                        fem::Start::rigid, mechanism.motion.body_poses);
   const double speed = mechanism.model.scales().cwiseProduct(x.v).lpNorm<Eigen::Infinity>();
-  if (speed < kStill)
+  if (speed < kSpeedAtRest)
     return {fem::Start::at_rest,
-            "equilibrium at rest under weight and given forces: prescribed velocities are zero"};
-  return {fem::Start::steady, "\"steady\": prescribed velocities are not zero"};
+            "equilibrium at rest under weight and given forces, because all prescribed velocities "
+            "are zero"};
+  return {fem::Start::steady, "\"steady\", because prescribed velocities are not zero"};
 }
 
 fem::Start named_start(const Scene& scene, fem::RigidMotion* rigid) {
@@ -116,7 +126,7 @@ void set_start(const Scene& scene, fem::RigidMotion* rigid, Mechanism& mechanism
   }
   Choice choice = rigid ? automatic_start(scene, *rigid) : automatic_start(scene, mechanism);
   mechanism.motion.start = choice.kind;
-  mechanism.start_words = std::move(choice.words);
+  mechanism.start_text = std::move(choice.words);
 }
 
 }  // namespace flexmorph::cases

@@ -13,7 +13,7 @@ namespace {
 
 /// Nodes at a location, each with its fraction of a force that is uniformly distributed over the
 /// location.
-struct PlaceNodes {
+struct RegionNodes {
   std::vector<int> nodes;
   std::vector<double> shares;  // fractions with the sum 1
   std::vector<int> cells;      // cells that can be material and touch these nodes
@@ -54,36 +54,36 @@ class NodeFinder {
   /// Returns the nodes of a location.
   /// @param path  path of the table with the location in the case, for messages
   /// @throws Error (input) when no node of the location can be material.
-  PlaceNodes at(const Place& place, const std::string& path) const {
+  RegionNodes at(const NodeRegion& location, const std::string& path) const {
     const double small = 1e-6 * grid_.dx();
-    Box box = place.box;
-    if (place.kind == Place::Kind::point) box = nearest(box.lower);
-    const bool is_disc = place.kind == Place::Kind::disc;
-    if (const std::vector<Vec2>* bore = is_disc ? bore_of(scene_, place.disc, grid_) : nullptr)
+    Box box = location.box;
+    if (location.kind == NodeRegion::Kind::point) box = nearest(box.lower);
+    const bool is_disc = location.kind == NodeRegion::Kind::disc;
+    if (const std::vector<Vec2>* bore = is_disc ? bore_of(scene_, location.disc, grid_) : nullptr)
       return at_rim(*bore, path);
-    PlaceNodes out;
+    RegionNodes out;
     for (int i = 0; i <= grid_.nx; ++i)
       for (int j = 0; j <= grid_.ny; ++j) {
         const Vec2 p = grid_.node_position(i, j);
         if (((box.lower - p).array() > small).any() || ((p - box.upper).array() > small).any())
           continue;
-        if (is_disc && (p - place.disc.center).norm() > place.disc.radius + small) continue;
+        if (is_disc && (p - location.disc.center).norm() > location.disc.radius + small) continue;
         const int cells = touch(i, j, out.cells);
         if (cells == 0) continue;
         out.nodes.push_back(grid_.node(i, j));
         // On an edge a node carries the traction of half of each adjacent cell.
-        out.shares.push_back(place.kind == Place::Kind::edge ? cells : 1.0);
+        out.shares.push_back(location.kind == NodeRegion::Kind::edge ? cells : 1.0);
       }
-    return whole(std::move(out), path + "." + key_of(place.kind));
+    return whole(std::move(out), path + "." + key_of(location.kind));
   }
 
  private:
   /// Returns the nodes between cells in the bore and cells that can be material, each with its
   /// fraction of the rim.
-  PlaceNodes at_rim(const std::vector<Vec2>& bore, const std::string& path) const {
+  RegionNodes at_rim(const std::vector<Vec2>& bore, const std::string& path) const {
     std::vector<signed char> in_bore(static_cast<size_t>(grid_.n_cells()), 0);
     for (const int cell : cells_within(grid_, {bore, {}})) in_bore[static_cast<size_t>(cell)] = 1;
-    PlaceNodes out;
+    RegionNodes out;
     std::vector<Vec2> rim;
     const Disc disc = disc_like(bore);
     const double reach = disc.radius + 2 * grid_.dx();
@@ -100,11 +100,11 @@ class NodeFinder {
   }
   /// Scales the fractions of the nodes to the sum 1.
   /// @throws Error (input) if there is no node
-  PlaceNodes whole(PlaceNodes out, const std::string& key) const {
+  RegionNodes whole(RegionNodes out, const std::string& key) const {
     if (out.nodes.empty())
       scene_.refuse(key,
-                    "no material can be there: a place has a node of the domain, outside of void "
-                    "regions; the cells are " +
+                    "no material can be there: a location contains a node of the domain outside of "
+                    "void regions; the cells are " +
                         io::to_text(grid_.dx()) + " m wide");
     double sum = 0;
     for (const double s : out.shares) sum += s;
@@ -124,15 +124,15 @@ class NodeFinder {
     const Vec2 p = grid_.node_position(i, j);
     return {p, p};
   }
-  static const char* key_of(Place::Kind kind) {
+  static const char* key_of(NodeRegion::Kind kind) {
     switch (kind) {
-      case Place::Kind::edge:
+      case NodeRegion::Kind::edge:
         return "edge";
-      case Place::Kind::point:
+      case NodeRegion::Kind::point:
         return "point";
-      case Place::Kind::disc:
+      case NodeRegion::Kind::disc:
         return "disc";
-      case Place::Kind::box:
+      case NodeRegion::Kind::box:
         break;
     }
     return "box";
@@ -170,22 +170,24 @@ double material_around(const Grid& grid, int node, const VectorXd& fractions) {
 /// @param path  path of the table of the force in the case, for messages
 /// @throws Error (input) where the nodes cannot carry the force
 std::vector<Vec2> forces_at(const Scene& scene, const Grid& grid, const PlaneForce& force,
-                            const PlaceNodes& place, const std::string& path) {
-  if (force.bearing && bore_of(scene, force.place.disc, grid) == nullptr)
-    scene.refuse(path + ".bearing",
-                 "a pin wants a bore: no hole and no void region has this centre and this radius, "
-                 "to half a cell, " +
-                     io::to_text(0.5 * grid.dx()) + " m");
+                            const RegionNodes& location, const std::string& path) {
+  if (force.bearing && bore_of(scene, force.location.disc, grid) == nullptr)
+    scene.refuse(
+        path + ".bearing",
+        "a pin needs a bore, but no hole and no void region has this centre and this radius "
+        "within half a cell, " +
+            io::to_text(0.5 * grid.dx()) + " m");
   std::vector<Vec2> points;
-  for (const int node : place.nodes)
+  for (const int node : location.nodes)
     points.push_back(grid.node_position(node / (grid.ny + 1), node % (grid.ny + 1)));
-  const std::vector<Vec2> out = verification::spread(
-      {force.force, force.moment, force.bearing, force.place.disc.center}, points, place.shares);
+  const std::vector<Vec2> out =
+      verification::spread({force.force, force.moment, force.bearing, force.location.disc.center},
+                           points, location.shares);
   if (out.empty())
     scene.refuse(
         path + (force.moment != 0 ? ".moment" : ".bearing"),
-        "the nodes there cannot carry it: a moment wants two nodes, a pin a rim before it; "
-        "the cells are " +
+        "the nodes at this location cannot carry it: a moment needs two nodes, and a pin needs "
+        "nodes on the half of the rim to which its force points; the cells are " +
             io::to_text(grid.dx()) + " m wide");
   return out;
 }
@@ -212,37 +214,37 @@ Vec2 weight_of(const Scene& scene) {
   return scene.gravity ? Vec2(*scene.gravity) : Vec2(Vec2::Zero());
 }
 
-std::vector<HeldOrLoaded> static_places(const Scene& scene, const Grid& grid,
-                                        std::span<const signed char> outside) {
+std::vector<HeldOrLoaded> static_locations(const Scene& scene, const Grid& grid,
+                                           std::span<const signed char> outside) {
   const NodeFinder find(scene, grid, outside);
-  std::vector<HeldOrLoaded> places;
+  std::vector<HeldOrLoaded> locations;
   const Domain& domain = *scene.domain;
   for (size_t s = 0; s < domain.supports.size(); ++s)
-    places.push_back({"support " + std::to_string(s + 1), true,
-                      find.at(domain.supports[s].place, support_path(s)).cells});
+    locations.push_back({"support " + std::to_string(s + 1), true,
+                         find.at(domain.supports[s].location, support_path(s)).cells});
   for (size_t l = 0; l < domain.loads.size(); ++l)
     for (size_t f = 0; f < domain.loads[l].forces.size(); ++f)
-      places.push_back({"load '" + domain.loads[l].name + "'", false,
-                        find.at(domain.loads[l].forces[f].place, force_path(l, f)).cells});
-  return places;
+      locations.push_back({"load '" + domain.loads[l].name + "'", false,
+                           find.at(domain.loads[l].forces[f].location, force_path(l, f)).cells});
+  return locations;
 }
 
 std::vector<LoadOnVoid> loads_on_void(const Scene& scene, const mmc::BodyProblem& problem,
                                       const VectorXd& fractions) {
-  constexpr double kLeastMaterial = 0.5;  // least material around a loaded node [cells]
+  constexpr double kMinMaterial = 0.5;  // least material around a loaded node [cells]
   const Domain& domain = *scene.domain;
   const NodeFinder find(scene, problem.grid, problem.outside);
   std::vector<LoadOnVoid> out;
   for (size_t l = 0; l < domain.loads.size(); ++l) {
     LoadOnVoid found{domain.loads[l].name, 0};
     for (size_t f = 0; f < domain.loads[l].forces.size(); ++f) {
-      const PlaceNodes place = find.at(domain.loads[l].forces[f].place, force_path(l, f));
+      const RegionNodes location = find.at(domain.loads[l].forces[f].location, force_path(l, f));
       const std::vector<Vec2> forces =
-          forces_at(scene, problem.grid, domain.loads[l].forces[f], place, force_path(l, f));
+          forces_at(scene, problem.grid, domain.loads[l].forces[f], location, force_path(l, f));
       double on_void = 0, all = 0;
-      for (size_t k = 0; k < place.nodes.size(); ++k) {
+      for (size_t k = 0; k < location.nodes.size(); ++k) {
         all += forces[k].norm();
-        if (material_around(problem.grid, place.nodes[k], fractions) < kLeastMaterial)
+        if (material_around(problem.grid, location.nodes[k], fractions) < kMinMaterial)
           on_void += forces[k].norm();
       }
       found.part = std::max(found.part, on_void / all);
@@ -259,7 +261,7 @@ StaticConditions static_conditions(const Scene& scene, const Grid& grid,
   StaticConditions out;
   for (size_t s = 0; s < domain.supports.size(); ++s) {
     const PlaneSupport& support = domain.supports[s];
-    for (const int node : find.at(support.place, support_path(s)).nodes) {
+    for (const int node : find.at(support.location, support_path(s)).nodes) {
       if (support.x) out.held.push_back({node, 0});
       if (support.y) out.held.push_back({node, 1});
     }
@@ -270,10 +272,10 @@ StaticConditions static_conditions(const Scene& scene, const Grid& grid,
     load.weight = domain.loads[l].weight;
     for (size_t f = 0; f < domain.loads[l].forces.size(); ++f) {
       const PlaneForce& force = domain.loads[l].forces[f];
-      const PlaceNodes place = find.at(force.place, force_path(l, f));
-      const std::vector<Vec2> forces = forces_at(scene, grid, force, place, force_path(l, f));
-      for (size_t k = 0; k < place.nodes.size(); ++k)
-        load.forces.push_back({place.nodes[k], forces[k]});
+      const RegionNodes location = find.at(force.location, force_path(l, f));
+      const std::vector<Vec2> forces = forces_at(scene, grid, force, location, force_path(l, f));
+      for (size_t k = 0; k < location.nodes.size(); ++k)
+        load.forces.push_back({location.nodes[k], forces[k]});
     }
   }
   return out;

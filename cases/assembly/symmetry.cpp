@@ -11,7 +11,7 @@ namespace flexmorph::cases {
 namespace {
 
 /// Relative tolerance for round-off of positions and forces [-].
-constexpr double kSame = 1e-9;
+constexpr double kLengthTolerance = 1e-9;
 
 /// The reflection of a grid in one of its middle lines.
 struct GridImage {
@@ -31,7 +31,7 @@ struct GridImage {
     return out;
   }
   bool keeps(const VectorXd& cells) const {
-    return (of_cells(cells) - cells).cwiseAbs().maxCoeff() <= kSame;
+    return (of_cells(cells) - cells).cwiseAbs().maxCoeff() <= kLengthTolerance;
   }
 };
 
@@ -65,10 +65,10 @@ bool keeps_loads(const GridImage& image, const std::vector<mmc::LoadCase>& loads
   };
   return std::all_of(loads.begin(), loads.end(), [&](const mmc::LoadCase& load) {
     const VectorXd wanted = nodal(load, true);
-    const double small = kSame * wanted.cwiseAbs().maxCoeff();
+    const double small = kLengthTolerance * wanted.cwiseAbs().maxCoeff();
     return std::any_of(loads.begin(), loads.end(), [&](const mmc::LoadCase& other) {
       const VectorXd found = nodal(other, false);
-      return std::abs(other.weight - load.weight) <= kSame * load.weight &&
+      return std::abs(other.weight - load.weight) <= kLengthTolerance * load.weight &&
              ((found - wanted).cwiseAbs().maxCoeff() <= small ||
               (opposites && (found + wanted).cwiseAbs().maxCoeff() <= small));
     });
@@ -108,7 +108,7 @@ class Symmetries {
     if (!despite_loads && !scene_.domain) return kMotion;
     if (!despite_loads && !keeps_static_loads(image)) return kLoads;
     if (!mmc::is_symmetric(start_, line(in_x)))
-      return "the components of the start are not symmetric";
+      return "the components of the initial design are not symmetric";
     return "";
   }
 
@@ -159,9 +159,10 @@ mmc::Symmetry symmetry_of(const Scene& scene, const BodyDesign& design,
     if (!obstacle.empty() && !wanted.automatic) {
       const bool loads = obstacle == kLoads || obstacle == kMotion;
       scene.refuse("design." + std::to_string(&design - scene.designs.data()) + ".symmetry",
-                   obstacle + " to the line " +
+                   obstacle + " about the line " +
                        (in_x ? "x = " + io::to_text(*line.x) : "y = " + io::to_text(*line.y)) +
-                       " m" + (loads ? "; symmetry_despite_loads = true enforces it" : ""));
+                       " m" +
+                       (loads ? "; symmetry_despite_loads = true enforces the symmetry" : ""));
     }
     if (obstacle.empty()) (in_x ? out.x : out.y) = in_x ? line.x : line.y;
   }

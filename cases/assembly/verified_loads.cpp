@@ -7,16 +7,17 @@ namespace {
 
 constexpr double kRoundness = 0.01;  ///< Tolerance of the polygon of a disc [cells].
 
-verification::Location place_of(const Scene& scene, const Place& place,
-                                const mmc::BodyProblem& problem) {
-  if (place.kind == Place::Kind::disc) {
-    if (const std::vector<Vec2>* bore = bore_of(scene, place.disc, problem.grid))
+verification::Location location_of(const Scene& scene, const NodeRegion& location,
+                                   const mmc::BodyProblem& problem) {
+  if (location.kind == NodeRegion::Kind::disc) {
+    if (const std::vector<Vec2>* bore = bore_of(scene, location.disc, problem.grid))
       return verification::border_location(*bore);
-    return {{},
-            circle_within(place.disc.center, place.disc.radius, kRoundness * problem.grid.dx())};
+    return {
+        {},
+        circle_within(location.disc.center, location.disc.radius, kRoundness * problem.grid.dx())};
   }
-  if (place.kind != Place::Kind::point) return verification::box_location(place.box);
-  return verification::point_location(place.box.lower, mmc::domain_of(problem),
+  if (location.kind != NodeRegion::Kind::point) return verification::box_location(location.box);
+  return verification::point_location(location.box.lower, mmc::domain_of(problem),
                                       mmc::point_reach(problem));
 }
 
@@ -26,20 +27,20 @@ verification::Loads loads_by_position(const Scene& scene, const mmc::BodyProblem
   verification::Loads out;
   out.worst = mmc::compliance_row(problem.goal).per_load;
   for (const PlaneSupport& s : scene.domain->supports)
-    out.supports.push_back({out.add(place_of(scene, s.place, problem)), s.x, s.y});
+    out.supports.push_back({out.add(location_of(scene, s.location, problem)), s.x, s.y});
   if (const Vec2 weight = weight_of(scene); weight != Vec2::Zero()) {
     out.grid = problem.grid;
     const VectorXd field = (-weight).replicate(problem.grid.n_nodes(), 1);
     out.uniform_acceleration = std::make_shared<const VectorXd>(field);
   }
-  for (const LoadCase& l : scene.domain->loads) {
+  for (const StaticLoadCase& l : scene.domain->loads) {
     verification::Load& load = out.loads.emplace_back();
     load.acceleration = out.uniform_acceleration.get();
     load.name = l.name;
     load.weight = l.weight;
     for (const PlaneForce& f : l.forces)
-      load.forces.push_back({out.add(place_of(scene, f.place, problem)), f.force, f.moment,
-                             f.bearing, f.place.disc.center});
+      load.forces.push_back({out.add(location_of(scene, f.location, problem)), f.force, f.moment,
+                             f.bearing, f.location.disc.center});
   }
   return out;
 }

@@ -50,8 +50,8 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
     const double n = element.n_elements(),
                  tangents = times(body.flow ? kTangentsOfFlow : kTangents);
     const ElementOperations each = body.row->operations(body, element);
-    out.forces +=
-        times(kForces) * n * (body.has_free_lines() ? kFreePoint * points_of(body) : each.force);
+    out.forces += times(kForces) * n *
+                  (body.has_eulerian_lines() ? kFreePoint * points_of(body) : each.force);
     out.tangents += tangents * n * each.tangent;
     // Nodes are numbered along the shorter side, so that the bandwidth is about one row of nodes.
     const double vectors = element.n_shapes() / (body.row->across ? 4.0 : 2.0);
@@ -59,7 +59,8 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism) {
     const double band = across * vectors * element.dim();
     out.solver += built.n_dofs() * band * (tangents * kFactor * band + 4 * times(kSolutions));
     if (body.flow)
-      out.flow += kRefresh * (body.is_even() ? body.elements[0] : 1) + body.elements[1] * kPower;
+      out.flow +=
+          kRefresh * (body.has_uniform_mesh() ? body.elements[0] : 1) + body.elements[1] * kPower;
   }
   const auto rows = static_cast<double>(4 * scene.rigid_bodies.size() + scene.springs.size()) +
                     mechanism.model.n_constraints();
@@ -86,7 +87,7 @@ double design_operations(const Scene& scene, const BodyDesign& d) {
 
 /// Returns the CPU time of motions on the cells of the designs [s]: at most one motion per cycle,
 /// and the motion with uniform material.
-double cells_seconds(const Scene& scene, const Extent& extent) {
+double cells_seconds(const Scene& scene, const ResourceEstimate& resource_estimate) {
   const Scene cells = on_cells(scene, scene.verify->cells);
   double step = 0;
   for (const BodyDesign& d : cells.designs) {
@@ -101,32 +102,33 @@ double cells_seconds(const Scene& scene, const Extent& extent) {
     step += along * across * (kForces * each.force + tangents * each.tangent);
     step += along * across * body.dim() * band * (tangents * kFactor * band + 4 * kSolutions);
   }
-  return extent.steps * step * (scene.cycle.max_cycles + 1) / kMotionRate;
+  return resource_estimate.steps * step * (scene.cycle.max_cycles + 1) / kMotionRate;
 }
 
 }  // namespace
 
 double expected_seconds(const Scene& scene, const Mechanism* mechanism) {
-  const Extent extent = extent_of(scene);
+  const ResourceEstimate resource_estimate = estimate_resources(scene);
   double out = kStart;
   if (mechanism != nullptr) {
     const double step = scene.time.integrator == "minimal_coordinates"
                             ? kRigid * 1e2
                             : step_operations(scene, *mechanism).total();
     // The verification computes two motions on a finer mesh; each cycle computes one for the loads.
-    const double finer = !scene.verify || scene.judges_on_cells() ? 0
-                         : scene.verify->mesh                     ? 4
+    const double finer = !scene.verify || scene.verifies_on_cells() ? 0
+                         : scene.verify->mesh                       ? 4
                                               : std::pow(scene.verify->refine, 2);
-    const double cycles = extent.iterations > 0 ? scene.cycle.max_cycles + 2 : 1;
-    out += extent.steps * step * (cycles + 2 * finer) / kMotionRate;
-    if (scene.judges_on_cells()) out += cells_seconds(scene, extent);
-    out += extent.frames * kFrameSeconds * static_cast<double>(scene.bodies.size());
+    const double cycles = resource_estimate.iterations > 0 ? scene.cycle.max_cycles + 2 : 1;
+    out += resource_estimate.steps * step * (cycles + 2 * finer) / kMotionRate;
+    if (scene.verifies_on_cells()) out += cells_seconds(scene, resource_estimate);
+    out += resource_estimate.frames * kFrameSeconds * static_cast<double>(scene.bodies.size());
   }
   for (const BodyDesign& d : scene.designs) {
-    const double iterations = extent.iterations / static_cast<double>(scene.designs.size());
+    const double iterations =
+        resource_estimate.iterations / static_cast<double>(scene.designs.size());
     const double cells = 1.0 * d.grid.nx * d.grid.ny;
     out += iterations * (design_operations(scene, d) / kFactorRate + cells * kCellSeconds);
-    if (mechanism != nullptr) out += extent.frames * cells * kPointSeconds;
+    if (mechanism != nullptr) out += resource_estimate.frames * cells * kPointSeconds;
   }
   return out;
 }

@@ -21,7 +21,9 @@ using io::to_text;
 struct Usual {
   double lower, upper;
   bool holds(double x) const { return x >= lower && x <= upper; }
-  std::string words() const { return "usual are " + to_text(lower) + " to " + to_text(upper); }
+  std::string words() const {
+    return "the usual range is " + to_text(lower) + " to " + to_text(upper);
+  }
 };
 constexpr Usual kModulus{1e3, 2e12}, kDensity{10, 25000}, kGravity{0.01, 50};
 constexpr Usual kSlenderness{2, 5000}, kThinness{1, 1e5};
@@ -40,7 +42,7 @@ Support support_of(const Scene& scene, const Body& body) {
     frames += j.joins_edges() || (j.body == body.name && (j.holds_frame() || j.holds_edges()));
   }
   if (held == 0) return Support::none;
-  if (held > 1) return Support::two_places;
+  if (held > 1) return Support::two_locations;
   return frames == 1 ? Support::cantilever : Support::one_point;
 }
 
@@ -49,8 +51,8 @@ bool has_density(const Scene& scene) { return !scene.statics || scene.gravity; }
 
 /// Returns the text for a support.
 std::string to_string(Support support) {
-  static const std::array<const char*, 4> kWords = {"free", "about one pin", "as a cantilever",
-                                                    "between pins"};
+  static const std::array<const char*, 4> kWords = {"free", "supported by one pin", "cantilever",
+                                                    "supported by pins"};
   return kWords[static_cast<size_t>(support)];
 }
 
@@ -122,7 +124,7 @@ BendingFigures figures_of(const Scene& scene, const Body& body) {
                          out.depth / std::sqrt(12.0);
   }
   if (!scene.statics) out.step_frequency = scene.time.step * out.frequencies[0];
-  if (out.support != Support::cantilever && out.support != Support::two_places) return out;
+  if (out.support != Support::cantilever && out.support != Support::two_locations) return out;
   if (scene.gravity)
     out.sag = deflection(out.support, EI, L,
                          body.density * scene.gravity->norm() * across * out.depth, {}) /
@@ -167,10 +169,10 @@ void remark_body(const Body& body, const BendingFigures& f, Remarks& out) {
   const Scene& scene = out.scene;
   const std::string path = "body." + body.name + ".", modulus = path + "youngs_modulus";
   out.check(modulus, body.youngs_modulus, kModulus,
-            "Young's modulus of " + to_text(body.youngs_modulus, 3) + " Pa");
+            "Young's modulus is " + to_text(body.youngs_modulus, 3) + " Pa");
   if (has_density(scene))
     out.check(path + "density", body.density, kDensity,
-              "a density of " + to_text(body.density, 3) + " kg/m^3");
+              "the density is " + to_text(body.density, 3) + " kg/m^3");
   const bool beam = !body.row->across;
   std::string depth = "height", other = "width";
   if (!beam && body.in_space()) depth = "thickness";
@@ -182,51 +184,53 @@ void remark_body(const Body& body, const BendingFigures& f, Remarks& out) {
   check_ratio(depth, f.slenderness(), kSlenderness);
   check_ratio(other, f.length / across, body.in_space() ? Usual{0.1, 5000} : kThinness);
   const double frequency = f.frequencies[0], periods = frequency * scene.time.end;
-  const std::string lowest = "the lowest bending, " + to_text(frequency, 3) + " Hz, has ";
+  const std::string lowest = "the lowest bending frequency, " + to_text(frequency, 3) + " Hz, has ";
   if (f.step_frequency > kFastest)
-    out.add(modulus,
-            lowest + to_text(f.step_frequency, 3) + " periods in every time step: nearly rigid");
+    out.add(modulus, lowest + to_text(f.step_frequency, 3) +
+                         " periods per time step: the body is almost rigid");
   if (!scene.statics && frequency > 0 && periods < kSlowest)
-    out.add(modulus, lowest + "a period of " + to_text(1 / periods, 3) + " runs: nearly a cloth");
+    out.add(modulus, lowest + "a period of " + to_text(1 / periods, 3) +
+                         " times the simulated time: the body has almost no stiffness");
   if (f.sag && *f.sag > kSag)
-    out.add(modulus,
-            "hangs by " + to_text(*f.sag, 3) + " of its length under gravity, by linear theory");
+    out.add(modulus, "the deflection under gravity is " + to_text(*f.sag, 3) +
+                         " times the length (linear theory)");
   if (f.bend && *f.bend > kBend)
-    out.add(modulus,
-            "bends by " + to_text(*f.bend, 3) + " of its length under its loads, by linear theory");
+    out.add(modulus, "the deflection under the loads is " + to_text(*f.bend, 3) +
+                         " times the length (linear theory)");
 }
 
 void remark_start(const std::string& key, double angle, Remarks& out) {
   if (std::abs(angle) > 2 * std::numbers::pi)
-    out.add(key, "an angle of " + to_text(angle, 4) + " rad, more than a turn: angles are radians");
+    out.add(key, "the angle is " + to_text(angle, 4) +
+                     " rad, more than one revolution; angles are in radians");
 }
 
 void remark_turns(Remarks& out) {
   for (const TurnFigures& turn : turn_figures(out.scene)) {
-    const std::string words = turn.what + " turns by " + to_text(turn.angle, 4) + " rad, " +
-                              to_text(turn.angle / (2 * std::numbers::pi), 3) + " turns";
+    const std::string words = turn.what + " rotates by " + to_text(turn.angle, 4) + " rad, " +
+                              to_text(turn.angle / (2 * std::numbers::pi), 3) + " revolutions";
     if (turn.per_step > kTurnPerStep)
-      out.add(turn.key, words + ", " + to_text(turn.per_step, 2) + " rad in every time step");
+      out.add(turn.key, words + ", " + to_text(turn.per_step, 2) + " rad per time step");
     else if (turn.angle > 2 * std::numbers::pi * kTurns || looks_like_degrees(turn.angle))
-      out.add(turn.key, words + ": angles are radians");
+      out.add(turn.key, words + "; angles are in radians");
   }
 }
 
 std::string bending_text(const BendingFigures& f) {
   std::string out;
   const std::string what = "bending of " + f.body;
-  std::string words = "a strip of length / depth " + to_text(f.slenderness(), 3);
+  std::string words = "slender strip with length / depth = " + to_text(f.slenderness(), 3);
   if (f.frequencies[0] > 0)
-    words = "lowest " + to_text(f.frequencies[0], 3) + " and " + to_text(f.frequencies[1], 3) +
-            " Hz, " + to_string(f.support) + ", " + words;
+    words = "lowest natural frequencies " + to_text(f.frequencies[0], 3) + " and " +
+            to_text(f.frequencies[1], 3) + " Hz, " + to_string(f.support) + ", " + words;
   else
     words += ", " + to_string(f.support);
   out = summary_row(what, words);
   words.clear();
   const auto add = [&](const std::string& more) { words += (words.empty() ? "" : "; ") + more; };
-  if (f.step_frequency > 0) add("time step times frequency " + to_text(f.step_frequency, 2));
-  if (f.sag) add("hangs by " + to_text(*f.sag, 2) + " of its length under gravity");
-  if (f.bend) add("bends by " + to_text(*f.bend, 2) + " of its length under its loads, if linear");
+  if (f.step_frequency > 0) add("time step * lowest frequency = " + to_text(f.step_frequency, 2));
+  if (f.sag) add("deflection under gravity " + to_text(*f.sag, 2) + " times the length");
+  if (f.bend) add("deflection under loads " + to_text(*f.bend, 2) + " times the length (linear)");
   return words.empty() ? out : out + summary_row("", words);
 }
 
@@ -234,16 +238,17 @@ std::string of_all(double bytes, double all) {
   return bytes_text(bytes) + (std::isfinite(all) ? " of " + bytes_text(all) : "");
 }
 
-std::string room_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine) {
-  const Extent extent = extent_of(scene);
-  const bool most = extent.iterations > 0 || extent.step_key == "static.max_steps",
+std::string disk_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine) {
+  const ResourceEstimate resource_estimate = estimate_resources(scene);
+  const bool most = resource_estimate.iterations > 0 ||
+                    resource_estimate.step_key == "static.max_steps",
              least = scene.time.tolerance.has_value();
   const std::string bound = most ? "at most about " : least ? "at least about " : "about ";
-  return summary_row("expected", "memory about " + of_all(extent.memory_bytes(), machine.memory) +
-                                     ", time " + bound +
-                                     duration_text(expected_seconds(scene, mechanism)) +
-                                     ", files " + (most ? "at most about " : "about ") +
-                                     of_all(extent.disk_bytes(), machine.disk) + " free");
+  return summary_row("expected",
+                     "memory about " + of_all(resource_estimate.memory_bytes(), machine.memory) +
+                         ", time " + bound + duration_text(expected_seconds(scene, mechanism)) +
+                         ", disk " + (most ? "at most about " : "about ") +
+                         of_all(resource_estimate.disk_bytes(), machine.disk) + " free");
 }
 
 }  // namespace
@@ -278,12 +283,12 @@ std::vector<TurnFigures> turn_figures(const Scene& scene) {
   return out;
 }
 
-std::vector<std::string> odd_remarks(const Scene& scene) {
+std::vector<std::string> plausibility_remarks(const Scene& scene) {
   Remarks out{scene};
   for (const Body& body : scene.bodies) remark_body(body, figures_of(scene, body), out);
   if (scene.gravity && scene.gravity->norm() > 0)
     out.check("gravity", scene.gravity->norm(), kGravity,
-              "gravity of " + to_text(scene.gravity->norm(), 3) + " m/s^2");
+              "gravity is " + to_text(scene.gravity->norm(), 3) + " m/s^2");
   for (const Hub& hub : scene.hubs)
     if (hub.turn.drive.empty()) remark_start("hub." + hub.name + ".angle", hub.angle, out);
   for (const RigidBody& body : scene.rigid_bodies)
@@ -300,17 +305,17 @@ std::string summary_row(const std::string& what, const std::string& words) {
   return "  " + what + std::string(gap, ' ') + words + "\n";
 }
 
-std::string figures_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine) {
-  std::string out = "\nfigures\n";
+std::string numbers_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine) {
+  std::string out = "\nplausibility\n";
   for (const BendingFigures& f : bending_figures(scene)) out += bending_text(f);
   for (const TurnFigures& turn : turn_figures(scene))
-    out +=
-        summary_row(turn.what, "turns by up to " + to_text(turn.angle, 4) + " rad, " +
-                                   to_text(turn.angle * 180 / std::numbers::pi, 4) + " degrees, " +
-                                   to_text(turn.angle / (2 * std::numbers::pi), 3) + " turns");
-  out += room_text(scene, mechanism, machine);
-  const std::vector<std::string> odd = odd_remarks(scene);
-  if (!odd.empty()) out += "\nout of the ordinary\n";
+    out += summary_row(turn.what,
+                       "rotates by up to " + to_text(turn.angle, 4) + " rad, " +
+                           to_text(turn.angle * 180 / std::numbers::pi, 4) + " degrees, " +
+                           to_text(turn.angle / (2 * std::numbers::pi), 3) + " revolutions");
+  out += disk_text(scene, mechanism, machine);
+  const std::vector<std::string> odd = plausibility_remarks(scene);
+  if (!odd.empty()) out += "\nimplausible\n";
   for (const std::string& each : odd) out += "  " + each + "\n";
   return out;
 }

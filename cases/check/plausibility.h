@@ -14,10 +14,10 @@ namespace flexmorph::cases {
 
 /// Support of a strip, as far as its bending depends on it.
 enum class Support {
-  none,        ///< The strip is free.
-  one_point,   ///< The strip turns about one point.
-  cantilever,  ///< One edge is clamped: its direction is held.
-  two_places   ///< The strip is held at two or more points, which are taken as pins.
+  none,          ///< The strip is free.
+  one_point,     ///< The strip turns about one point.
+  cantilever,    ///< One edge is clamped: its direction is held.
+  two_locations  ///< The strip is held at two or more points, which are taken as pins.
 };
 
 /// Plausibility numbers of the bending of a plate or beam, which is taken as a slender strip with
@@ -54,7 +54,7 @@ struct TurnFigures {
 std::vector<TurnFigures> turn_figures(const Scene& scene);
 
 /// Returns one sentence about every implausible number, with its location in the case.
-std::vector<std::string> odd_remarks(const Scene& scene);
+std::vector<std::string> plausibility_remarks(const Scene& scene);
 
 /// Returns one line of a summary: a name, and the text about it in the second column.
 std::string summary_row(const std::string& what, const std::string& words);
@@ -62,6 +62,6 @@ std::string summary_row(const std::string& what, const std::string& words);
 /// Returns the section of a summary that makes mistakes visible: lowest natural frequencies,
 /// deflections, rotations, the resource estimate, and implausible numbers.
 /// @param mechanism  mechanism of a scene that moves, else null
-std::string figures_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine);
+std::string numbers_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine);
 
 }  // namespace flexmorph::cases

@@ -46,20 +46,20 @@ fs::path cases_folder() {
 
 /// Throws for joints that depend on each other, and for bodies that do not reach their joints.
 void require_start(Mechanism& mechanism) {
-  constexpr double kMiss =
+  constexpr double kPositionTolerance =
       1e-6;  // relative to the size of the model: coordinates in cases are rounded
   fem::Workspace& model = mechanism.model;
-  const fem::State x =
-      fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
+  const fem::State x = fem::start_state(model, mechanism.moving_roots, 0, fem::Start::rigid,
+                                        mechanism.motion.body_poses);
   fem::require_independent(fem::diagnose(model, x));
   fem::ScaledConstraints rows;
   rows.evaluate(model, x);
   const VectorXd misses = rows.misses();
   const double worst = misses.lpNorm<Eigen::Infinity>();
-  if (worst > kMiss * fem::model_size(rows.scales(), x.q))
+  if (worst > kPositionTolerance * fem::model_size(rows.scales(), x.q))
     throw Error::input("at the start " + fem::list_joints(fem::heaviest_joints(model, misses, 1)) +
-                       " misses by " + io::to_text(worst, 3) +
-                       " m: bodies that are not deformed do not reach their joints");
+                       " has an error of " + io::to_text(worst, 3) +
+                       " m: the undeformed bodies do not reach their joints");
 }
 
 /// Throws for limits that the full design violates under its fixed loads.
@@ -71,8 +71,8 @@ void require_attainable(const Scene& scene, const mmc::BodyProblem& problem,
     if (!limit.wants_material()) continue;
     const double found = full.at(mmc::key_of(*limit.row));
     if (limit.excess(found) > 0)
-      scene.refuse(limit.key_path, "no design has so little: with all of the domain full the " +
-                                       std::string(limit.row->words) + " is " +
+      scene.refuse(limit.key_path, "no design can satisfy this limit: the " +
+                                       std::string(limit.row->words) + " of the full domain is " +
                                        io::to_text(found, 6) + " " + std::string(limit.row->unit));
   }
 }
@@ -97,10 +97,10 @@ void require_parts(const PreparedCase& prepared) {
   const std::vector<mmc::BodyProblem>& problems = prepared.design_problems();
   if (!scene.domain) return;
   const mmc::BodyProblem& problem = problems.front();
-  if (problem.grid.n_cells() <= kMostBuilt)
+  if (problem.grid.n_cells() <= kMaxBuiltCells)
     require_attainable(scene, problem, *build_static_loads(scene, problem));
   else
-    static_places(scene, problem.grid, problem.outside);
+    static_locations(scene, problem.grid, problem.outside);
 }
 
 /// Finds the entry whose quoted name comes first in a message.
@@ -143,7 +143,7 @@ std::string located_refusal(const Scene& scene, const std::string& message) {
 
 void require_buildable(const PreparedCase& prepared, const std::string& directory) {
   const Scene& scene = prepared.scene();
-  require_room(scene, this_machine(directory.empty() ? scene.output.directory : directory));
+  require_disk(scene, this_machine(directory.empty() ? scene.output.directory : directory));
   try {
     require_parts(prepared);
   } catch (const Error& error) {
@@ -180,9 +180,9 @@ std::string find_case(const std::string& name) {
   if (std::filesystem::exists(name)) return name;
   const std::string stem = std::filesystem::path(name).stem().string();
   const std::string close = io::nearest(stem, shipped);
-  throw Error::input(
-      "case '" + name + "': no such file, and not a shipped case" +
-      (close.empty() ? " (" + joined(shipped) + ")" : ", did you mean '" + close + "'?"));
+  throw Error::input("case '" + name + "': this is neither a file nor a shipped case" +
+                     (close.empty() ? "; the shipped cases are: " + joined(shipped)
+                                    : ", did you mean '" + close + "'?"));
 }
 
 }  // namespace flexmorph::cases

@@ -11,7 +11,7 @@ namespace flexmorph::cases {
 /// Largest number of cells of a static design whose solver is built for a check, which takes about
 /// a second. For larger designs only the locations of loads and supports are determined, because a
 /// factor of the matrix would take gigabytes of memory without being used.
-inline constexpr int kMostBuilt = 200'000;
+inline constexpr int kMaxBuiltCells = 200'000;
 
 /// A case that can be run: it is read, small enough for this machine, and was built once.
 struct ReadyCase {
@@ -34,7 +34,7 @@ std::vector<std::string> shipped_cases();
 
 /// Builds the model, the design problems and the loads of a case, as a run does first, so that
 /// errors are reported before the run. Before that it throws for a case that is too large for this
-/// machine (see require_room()).
+/// machine (see require_disk()).
 /// @param directory  run folder; empty: as the case says
 /// @throws Error, which names the case file if the scene comes from one
 void require_buildable(const PreparedCase& prepared, const std::string& directory = "");

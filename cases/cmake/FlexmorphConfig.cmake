@@ -1,7 +1,7 @@
-# find_package(Flexmorph [COMPONENTS shared | static]): targets flexmorph::geometry, io, fem, thermal,
-# optim, verification, mmc and cases, each with those that it stands on. With `shared`, which is the
-# default, all of them are one shared library; with `static` the libraries that Flexmorph itself
-# stands on are found again here.
+# find_package(Flexmorph [COMPONENTS shared | static]): targets flexmorph::geometry, io, fem,
+# thermal, optim, verification, mmc and cases, each with its dependencies. With `shared`, the
+# default, all of them are one shared library; with `static` the libraries that Flexmorph depends on
+# are searched here.
 set(Flexmorph_FOUND FALSE)
 if(NOT Flexmorph_FIND_COMPONENTS)
   set(Flexmorph_FIND_COMPONENTS shared)

@@ -1,8 +1,8 @@
-# Compiles through ccache where it is installed and no other launcher is set: what was compiled before
-# with the same options is copied, also after the build folder was emptied. GCC writes down which
-# precompiled header a file uses only with -fpch-preprocess, and ccache keeps files with a precompiled
-# header only with these two kinds of sloppiness; nothing here uses __DATE__ or __TIME__. Paths below
-# the source folder are replaced by relative ones, so that clones share their results.
+# Compiles through ccache if it is installed and no other launcher is set: results of earlier
+# compilations with equal options are copied, also after the build folder was emptied. GCC records
+# the precompiled header of a file only with -fpch-preprocess, and ccache caches files with a
+# precompiled header only with these two kinds of sloppiness; no source uses __DATE__ or __TIME__.
+# Paths below the source folder are replaced by relative ones, so that clones share their results.
 find_program(FLEXMORPH_CCACHE ccache)
 if(FLEXMORPH_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER

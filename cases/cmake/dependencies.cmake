@@ -1,11 +1,11 @@
-# Every library Flexmorph stands on, in the versions of Debian 12 or newer. All that are missing are
-# named in one message, with the command that installs them.
+# Every library that Flexmorph depends on, in the versions of Debian 12 or newer. All missing ones
+# are named in one message with the command that installs them.
 
 set(flexmorph_found "")
 set(flexmorph_missing "")
 
 # flexmorph_library(<name of its package files> <oldest version> <VARIABLE that is true when found>)
-# notes the outcome of a search.
+# records the outcome of a search.
 function(flexmorph_library name oldest found)
   if(${found})
     list(APPEND flexmorph_found "${name} ${${name}_VERSION}")
@@ -26,7 +26,7 @@ macro(flexmorph_find name oldest)
 endmacro()
 
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
-set(CMAKE_POLICY_DEFAULT_CMP0167 NEW)  # CGAL 6 asks for Boost without saying so
+set(CMAKE_POLICY_DEFAULT_CMP0167 NEW)  # CGAL 6 searches for Boost without setting this policy
 flexmorph_find(Eigen3 3.4)
 flexmorph_find(CGAL 5.5)
 flexmorph_find(Boost 1.74)
@@ -35,7 +35,7 @@ flexmorph_find(tomlplusplus 3.3)
 flexmorph_find(CLI11 2.1)
 flexmorph_find(nlohmann_json 3.11)
 
-# The C++ header is a package of its own.
+# The C++ header is in a separate package.
 find_package(NLopt 2.7 QUIET CONFIG)
 find_path(NLOPT_CXX_INCLUDE_DIR nlopt.hpp)
 if(NOT NLOPT_CXX_INCLUDE_DIR)
@@ -47,10 +47,10 @@ flexmorph_library(NLopt 2.7 NLopt_FOUND)
 find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
   pkg_check_modules(IPOPT QUIET IMPORTED_TARGET GLOBAL ipopt>=3.11)
-  # Drawings that are read: DXF, paths of SVG, and the XML around them.
+  # For reading drawings: DXF, paths of SVG, and XML.
   pkg_check_modules(DXFLIB QUIET IMPORTED_TARGET GLOBAL dxflib>=3.26)
   pkg_check_modules(GEOM2 QUIET IMPORTED_TARGET GLOBAL 2geom>=1.2)
-  # Offsets of outlines.
+  # For offsets of outlines.
   pkg_check_modules(GEOS QUIET IMPORTED_TARGET GLOBAL geos>=3.11)
   pkg_check_modules(LIBXML QUIET IMPORTED_TARGET GLOBAL libxml-2.0>=2.9)
 endif()
@@ -84,7 +84,8 @@ if(SUITESPARSE_FOUND)
 endif()
 flexmorph_library(SUITESPARSE 5.12 SUITESPARSE_FOUND)
 
-# Of OpenCASCADE a few libraries: its own package file wants the compiler's flags, and all of them.
+# Only a few libraries of OpenCASCADE are needed; its own package file requires its compiler flags
+# and all libraries.
 find_path(OCCT_INCLUDE_DIR STEPControl_Writer.hxx PATH_SUFFIXES opencascade)
 set(OCCT_FOUND TRUE)
 add_library(OpenCASCADE::step INTERFACE IMPORTED)
@@ -110,10 +111,10 @@ if(OCCT_FOUND)
 endif()
 flexmorph_library(OCCT 7.6 OCCT_FOUND)
 
-# What only tests need. Without GoogleTest there are none; what else is absent leaves out the tests
-# that need it: CalculiX solves exported designs, valijson (headers only) checks cases against their
-# schema, IDA of SUNDIALS integrates scenes. The package file of SUNDIALS would ask for PETSc and
-# MPI, which the serial libraries do not need.
+# Libraries for tests only. Without GoogleTest there are no tests; other missing libraries leave out
+# the tests that need them: CalculiX solves exported designs, valijson (headers only) checks cases
+# against their schema, IDA of SUNDIALS integrates scenes. The package file of SUNDIALS would
+# require PETSc and MPI, which the serial libraries do not need.
 if(FLEXMORPH_TESTS)
   set(flexmorph_absent "")
   flexmorph_find(GTest 1.12)
@@ -141,7 +142,7 @@ if(FLEXMORPH_TESTS)
     if(SUNDIALS_VERSION VERSION_LESS 6)
       set(SUNDIALS_FOUND FALSE)
     elseif(SUNDIALS_VERSION VERSION_GREATER_EQUAL 7)
-      # Its headers include those of MPI where it was built with MPI.
+      # Its headers include those of MPI if it was built with MPI.
       find_package(MPI QUIET COMPONENTS C)
       if(MPI_C_FOUND)
         target_link_libraries(SUNDIALS::ida INTERFACE MPI::MPI_C)
@@ -171,7 +172,7 @@ else()
   list(APPEND flexmorph_missing OpenBLAS)
 endif()
 
-# Part of the compiler.
+# OpenMP is part of the compiler.
 find_package(OpenMP 4.5 QUIET COMPONENTS CXX)
 flexmorph_library(OpenMP 4.5 OpenMP_CXX_FOUND)
 

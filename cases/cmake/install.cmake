@@ -1,8 +1,9 @@
-# What `cmake --install --component ...` puts where.
-# program: flexmorph and, in share/flexmorph/cases, where it looks for them, shipped cases.
-# library: the shared library, which holds all of Flexmorph.
-# development: static libraries, what links to the shared one, public headers under include/flexmorph
-# (included as here: "fem/model/model.h"), examples, and what find_package(Flexmorph) reads.
+# Components of `cmake --install --component ...`:
+# program: flexmorph and the shipped cases, in share/flexmorph/cases, where it searches for them.
+# library: the shared library, which contains all of Flexmorph.
+# development: the static libraries, the files for linking the shared one, public headers under
+# include/flexmorph (included as in this tree: "fem/model/model.h"), examples, and the files for
+# find_package(Flexmorph).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(flexmorph_package "${CMAKE_INSTALL_LIBDIR}/cmake/Flexmorph")
@@ -18,8 +19,8 @@ foreach(library options ${flexmorph_static})
 endforeach()
 list(TRANSFORM flexmorph_static PREPEND flexmorph_)
 
-# The shared library is linked from the objects of the static ones. Those who use it need no library
-# but Eigen's headers.
+# The shared library is linked from the objects of the static ones. Programs that use it need no
+# library but Eigen's headers.
 list(TRANSFORM flexmorph_static REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
 add_library(flexmorph_shared SHARED ${objects})
 target_link_libraries(flexmorph_shared PUBLIC flexmorph::options Eigen3::Eigen

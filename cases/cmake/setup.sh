@@ -1,12 +1,13 @@
-# Sourced by cases/run.sh and tests/run.sh, which set `root` to the top of the source tree: says what
-# will be done and how long it takes, installs missing packages, configures and builds.
+# Sourced by cases/run.sh and tests/run.sh, which set `root` to the top of the source tree: prints
+# the steps and their durations, installs missing packages, configures and builds.
 
 export LC_ALL=C
 build="$root/build"
-with_tests=  # tests/run.sh sets it: packages of tests/packages.txt are needed, too
+with_tests=  # set by tests/run.sh: packages of tests/packages.txt are needed, too
 
-# quotas FILE : the values of a file of this process's control groups, from its own group up to the
-# root. A container sees its own group as the root. ($system_root is set by tests/scripts.cmake.)
+# quotas FILE : prints the values of a file of this process's control groups, from its own group up
+# to the root. A container has its own group as the root. ($system_root is set by
+# tests/scripts.cmake.)
 quotas() {
   group=$(sed -n 's/^0:://p' "${system_root-}/proc/self/cgroup" 2>/dev/null) || group=
   while :; do
@@ -17,7 +18,7 @@ quotas() {
   done
 }
 
-# parallel_jobs CORES : how many jobs run beside each other: at most one per core, as many as the
+# parallel_jobs CORES : prints the number of parallel jobs: at most one per core, as many as the
 # quota of processor time allows (cpu.max: microseconds per period), and one per 1.2 GB of available
 # memory (the largest files take about 1 GB to compile); at least one.
 parallel_jobs() {
@@ -33,12 +34,12 @@ parallel_jobs() {
     done
   } | sort -n | sed -n '1{s/^0$/1/;p;}'
 }
-# nproc would obey OMP_NUM_THREADS, which says nothing of compilers and test programs.
+# nproc would obey OMP_NUM_THREADS, which is not meant for compilers and test programs.
 cores=$(parallel_jobs "$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)")
 
 stop() { echo "$1" >&2 && exit 1; }
 
-# check_build_folder : stops if the build folder belongs to another generator or another source tree.
+# check_build_folder : stops if the build folder belongs to another generator or source tree.
 check_build_folder() {
   cache="$build/CMakeCache.txt"
   [ -f "$cache" ] || return 0
@@ -54,8 +55,8 @@ check_build_folder() {
 # disk_of FOLDER : "<free kB> <mount point>"
 disk_of() { df -Pk "$1" | sed -n '2s/^.* \([0-9][0-9]*\)  *[0-9][0-9]*% */\1 /p'; }
 
-# check_disk GB : stops if the disks cannot hold a build folder of this size, less what it has already,
-# and 3 GB of missing packages.
+# check_disk GB : stops if the disks cannot hold a build folder of this size, minus its present
+# size, and 3 GB of missing packages.
 check_disk() {
   built=$(du -sk "$build" 2>/dev/null | cut -f 1)
   missing_gb=0
@@ -78,7 +79,7 @@ step() {
   else echo "  $n_steps. $2: about a minute"; fi
 }
 
-# announce CPU_MINUTES : prints the steps that both commands begin with; the build takes CPU_MINUTES.
+# announce CPU_MINUTES : prints the first steps of both commands; the build takes CPU_MINUTES.
 announce() {
   echo "On $cores cores ($(uname -m)) this command"
   count=$(missing_packages | wc -l)
@@ -106,8 +107,8 @@ package_lines() {
   [ -z "$with_tests" ] || sed -e 's/#.*//' -e '/^ *$/d' "$root/tests/packages.txt"
 }
 
-# Prints the lines of the package lists that no installed package satisfies. Where dpkg is absent
-# there are none: CMake names what it does not find.
+# Prints the lines of the package lists that no installed package satisfies. If dpkg is absent,
+# nothing is printed: CMake names the libraries that it does not find.
 missing_packages() {
   command -v dpkg-query >/dev/null || return 0
   package_lines | while read -r line; do
@@ -140,7 +141,8 @@ installable() {
   done
 }
 
-# apt_get WORD... : waits for the lock of other package managers, has time limits, asks nothing.
+# apt_get WORD... : waits for the lock of other package managers, has time limits, asks no
+# questions.
 apt_get() {
   timeout 1200 apt-get -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 \
     -o Acquire::http::Timeout=60 -o Dpkg::Options::=--force-confold "$@" </dev/null

@@ -11,7 +11,7 @@
 #include "fem/body_joints.h"
 #include "fem/dynamics/starts/rigid_kinematics.h"
 #include "fem/elements/ancf_plate.h"
-#include "fem/links/pair_link.h"
+#include "fem/force_elements/pair_force_element.h"
 #include "fem/terms.h"
 
 using namespace flexmorph;
@@ -20,10 +20,11 @@ const double kGrowth = 0.2;                                // rate of the length
 const fem::PlaneSection kSection(0.002, 7e10, 0.3, 2700);  // thickness, E, Poisson ratio, density
 
 /// A user-defined force element: the drag c |v| v of the air on point a.
-class Drag final : public fem::PairLink {
+class Drag final : public fem::PairForceElement {
  public:
-  explicit Drag(const fem::MarkerPlace& a) : PairLink("air", a, {}, {Part::kPositionA}, true) {}
-  std::unique_ptr<Link> clone() const override { return std::make_unique<Drag>(*this); }
+  explicit Drag(const fem::MarkerLocation& a)
+      : PairForceElement("air", a, {}, {Part::kPositionA}, true) {}
+  std::unique_ptr<ForceElement> clone() const override { return std::make_unique<Drag>(*this); }
 
  protected:
   void fill(const fem::State&, const Values&, const Values& rate, fem::PairForce& out) const final {
@@ -47,19 +48,20 @@ std::unique_ptr<fem::Element> growing_plate() {
 
 int main(int argc, char** argv) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
-  const fem::MarkerPlace carriage{.body = "carriage"}, up{"carriage", {0, 0}, std::numbers::pi / 2};
+  const fem::MarkerLocation carriage{.body = "carriage"},
+      up{"carriage", {0, 0}, std::numbers::pi / 2};
   fem::Workspace model;
   fem::add_rigid_body(model, {"carriage", {kMass, {0, 0}, 0.01}, 0.1}, VectorXd());
   const std::vector<std::string> terms{"inertia", "membrane_assumed"};
   model.add_body("boom", growing_plate(), kSection, fem::make_terms(terms, kSection, {}));
   model.add_joint(fem::make_slider("guide", {}, carriage));
   model.add_joint(fem::make_edge_weld("root", "boom", "root", up, fem::WeldMode::edge));
-  model.add_link(std::make_unique<Drag>(carriage));
-  const fem::Growth growth{"boom", fem::Carrier(up.body, up.point, up.angle)};
+  model.add_force_element(std::make_unique<Drag>(carriage));
+  const fem::MovingRoot growth{"boom", fem::DrivenFrame(up.body, up.point, up.angle)};
   fem::MotionSettings settings{.end = kEnd, .step = 1e-3, .start = fem::Start::rigid};
-  settings.placement = [](double t) {
+  settings.body_poses = [](double t) {
     const fem::FrameMotion running{.origin = {kSpeed * t, 0}, .origin_rate = {kSpeed, 0}};
-    return std::vector<fem::Placed>{{"carriage", running}};
+    return std::vector<fem::BodyPose>{{"carriage", running}};
   };
   for (int frame = 1; frame <= 20; ++frame) settings.stops.push_back(kEnd * frame / 20);
   std::filesystem::create_directories(folder);

@@ -20,7 +20,7 @@ class FirstMoment final : public mmc::Response {
     for (int i = 0; i < g.nx; ++i)
       for (int j = 0; j < g.ny; ++j) arm_(g.cell(i, j)) = full * (g.cell_center(i, j).x() - g.x0);
   }
-  void evaluate(const mmc::Seen& at, mmc::Values& out) override {
+  void evaluate(const mmc::DesignView& at, mmc::Values& out) override {
     out.f = arm_ * at.factors.mass;
     out.d_mass = arm_;
   }
@@ -43,7 +43,9 @@ class SteepestDescent final : public optim::Optimizer {
     optim::with_defaults(settings, {});
   }
   optim::Result minimize(optim::Problem& problem, const optim::Observer& observe) override {
-    const auto merit = [](const optim::Response& r) { return r.f + 10 * r.g.cwiseMax(0).sum(); };
+    const auto objective = [](const optim::ProblemValues& r) {
+      return r.f + 10 * r.g.cwiseMax(0).sum();
+    };
     optim::Search search(problem, settings_, observe);
     optim::Point at = search.start(), next;
     double step = settings_.move_limit;
@@ -54,7 +56,7 @@ class SteepestDescent final : public optim::Optimizer {
       const double steepest = std::max(slope.cwiseAbs().maxCoeff(), 1e-300);
       next.x = (at.x - step / steepest * slope).cwiseMax(search.lower()).cwiseMin(search.upper());
       const bool taken = search.evaluate(next.x, next.response) == optim::Trial::taken;
-      const bool better = taken && merit(next.response) < merit(at.response);
+      const bool better = taken && objective(next.response) < objective(at.response);
       if (better) at = next;
       if (!better) step *= 0.5;
     }
@@ -80,5 +82,5 @@ int main() {
   const cases::RunResult result = cases::compute(beam);
   const mmc::BodyOutcome& design = result.design.outcomes.front();
   std::printf("%d iterations: compliance %.4g, volume %.3f; %s\n", design.iterations,
-              design.sharp.compliance, design.sharp.volume, design.stop.c_str());
+              design.crisp.compliance, design.crisp.volume, design.stop.c_str());
 }

@@ -40,9 +40,9 @@ std::vector<const io::Key*> keys_of(const std::string& table) {
   for (const io::Key& key : io::all_keys())
     if (has(key, table)) out.push_back(&key);
   std::stable_sort(out.begin(), out.end(), [](const io::Key* a, const io::Key* b) {
-    const std::string first = a->place.file_name(), second = b->place.file_name();
-    return std::make_tuple(rank(*a), first, a->place.line(), a->place.column()) <
-           std::make_tuple(rank(*b), second, b->place.line(), b->place.column());
+    const std::string first = a->location.file_name(), second = b->location.file_name();
+    return std::make_tuple(rank(*a), first, a->location.line(), a->location.column()) <
+           std::make_tuple(rank(*b), second, b->location.line(), b->location.column());
   });
   return out;
 }
@@ -63,7 +63,7 @@ std::vector<KeyTable> made_book() {
   for (const std::string& path : tables::order()) {
     KeyTable table{{path}, keys_of(path), own_key(path)};
     if (table.keys.empty() || (!table.own && !path.empty()))
-      throw std::logic_error("no reader of [" + path + "] is part of this program");
+      throw std::logic_error("no source file of this program declares keys of [" + path + "]");
     if (!book.empty() && book.back().keys == table.keys)
       book.back().paths.push_back(path);
     else
@@ -73,11 +73,11 @@ std::vector<KeyTable> made_book() {
 }
 
 /// Returns the limits of a quantity as text: "> 0", ">= 0 and <= 1", or an empty text.
-std::string limits_words(const io::Quantity& q) {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
+std::string limits_text(const io::Quantity& q) {
+  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   std::string text;
-  if (q.lower > -kAny) text = (q.lower_open ? "> " : ">= ") + io::to_text(q.lower);
-  if (q.upper < kAny)
+  if (q.lower > -kUnlimited) text = (q.lower_open ? "> " : ">= ") + io::to_text(q.lower);
+  if (q.upper < kUnlimited)
     text += (text.empty() ? "" : " and ") + std::string(q.upper_open ? "< " : "<= ") +
             io::to_text(q.upper);
   return text;
@@ -97,7 +97,7 @@ std::string one_word(const io::Form& form) {
 }
 
 /// Returns the type of a value as text: "number", for lists "numbers".
-std::string value_words(const io::Form& form) {
+std::string value_text(const io::Form& form) {
   const std::string many = form.is_list ? "s" : "";
   switch (form.kind) {
     case Kind::number:
@@ -117,11 +117,11 @@ std::string value_words(const io::Form& form) {
   }
   const std::string words = one_word(form);
   if (words.empty()) return "name" + many + " of " + form.quantity.noun;
-  return form.is_list ? "some of " + words : words;
+  return form.is_list ? "one or more of " + words : words;
 }
 
-std::string form_words(const io::Form& form) {
-  std::string text = value_words(form);
+std::string form_text(const io::Form& form) {
+  std::string text = value_text(form);
   if (form.columns > 0) {
     text = "rows of " + io::to_text(form.columns) + " " + text;
   } else if (form.is_list && form.most > 0) {
@@ -130,7 +130,7 @@ std::string form_words(const io::Form& form) {
   } else if (form.is_list && !form.allowed) {
     text = "list of " + text;
   }
-  const std::string limits = limits_words(limits_of(form));
+  const std::string limits = limits_text(limits_of(form));
   if (!limits.empty()) text += " " + limits;
   if (!form.quantity.unit.empty()) text += " [" + form.quantity.unit + "]";
   return form.or_name.empty() ? text : text + ", or names of " + form.or_name;
@@ -178,13 +178,13 @@ const KeyTable& table_of_keys(const std::string& path) {
       (close.empty() ? "; the tables are " + joined(known) : ", did you mean '" + close + "'?"));
 }
 
-std::string type_words(const io::Key& key) {
+std::string type_text(const io::Key& key) {
   std::string text;
-  for (const io::Form& form : key.forms) text += (text.empty() ? "" : ", or ") + form_words(form);
+  for (const io::Form& form : key.forms) text += (text.empty() ? "" : ", or ") + form_text(form);
   return text;
 }
 
-std::string default_words(const io::Key& key) {
+std::string default_text(const io::Key& key) {
   if (key.fallback) return io::toml_text(*key.fallback);
   return key.absence.empty() ? "required" : key.absence;
 }

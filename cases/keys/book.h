@@ -31,9 +31,9 @@ const KeyTable& table_of_keys(const std::string& path);
 std::vector<std::string> key_table_names();
 
 /// Returns the type of a key as text, such as "number > 0 [m], or name of a drive".
-std::string type_words(const io::Key& key);
+std::string type_text(const io::Key& key);
 /// Returns the default of a key as text: "required", a value such as "0.8", or words.
-std::string default_words(const io::Key& key);
+std::string default_text(const io::Key& key);
 /// Returns the sentence of a key, after the condition under which the key is allowed.
 std::string sentence_of(const io::Key& key);
 /// Returns the explanations of the words that the keys of a table allow: key, word and sentence.

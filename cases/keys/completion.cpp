@@ -17,7 +17,7 @@ struct Settable {
   std::vector<std::string> words;
 };
 
-std::vector<std::string> words_of(const io::Key& key) {
+std::vector<std::string> text_of(const io::Key& key) {
   std::vector<std::string> out;
   for (const io::Form& form : key.forms) {
     if (form.kind == Kind::boolean) out.insert(out.end(), {"true", "false"});
@@ -39,18 +39,18 @@ std::vector<Settable> settable_keys() {
         const std::string full = (path.empty() ? "" : path + ".") + key->name;
         const auto old = std::find_if(out.begin(), out.end(),
                                       [&](const Settable& each) { return each.key == full; });
-        Settable& place = old == out.end() ? out.emplace_back() : *old;
-        place.key = full;
-        for (std::string& word : words_of(*key))
-          if (std::find(place.words.begin(), place.words.end(), word) == place.words.end())
-            place.words.push_back(std::move(word));
+        Settable& location = old == out.end() ? out.emplace_back() : *old;
+        location.key = full;
+        for (std::string& word : text_of(*key))
+          if (std::find(location.words.begin(), location.words.end(), word) == location.words.end())
+            location.words.push_back(std::move(word));
       }
   return out;
 }
 
 /// Returns shell functions that print words, for scripts of both shells.
 std::string shared_functions(const std::vector<CommandWords>& commands) {
-  std::string out = "_flexmorph_words() {  # of a key\n  case \"$1\" in\n";
+  std::string out = "_flexmorph_candidates() {  # of a key\n  case \"$1\" in\n";
   std::string keys;
   for (const Settable& each : settable_keys()) {
     keys += " " + each.key + "=";
@@ -89,7 +89,7 @@ constexpr const char* kBash = R"sh(_flexmorph() {
   elif [[ $prev == --set || $prev == --vary ]]; then
     if [[ $cur == *=* ]]; then
       local word
-      for word in $(_flexmorph_words "${cur%%=*}"); do found+=" ${cur%%=*}=$word"; done
+      for word in $(_flexmorph_candidates "${cur%%=*}"); do found+=" ${cur%%=*}=$word"; done
     else
       found="$(_flexmorph_keys)"
       compopt -o nospace 2> /dev/null
@@ -133,7 +133,7 @@ constexpr const char* kZsh = R"sh(_flexmorph() {
     if [[ $PREFIX == *=* ]]; then
       local key="${PREFIX%%=*}"
       compset -P '*='
-      compadd -- $(_flexmorph_words "$key")
+      compadd -- $(_flexmorph_candidates "$key")
     else
       compadd -S '' -- $(_flexmorph_keys)
     fi

@@ -19,10 +19,10 @@ std::string keys_as_markdown() {
   for (const KeyTable& table : key_book()) {
     out += (out.empty() ? "#### " : "\n#### ") + table.title() + "\n\n";
     if (table.own) out += table.own->sentence + "\n\n";
-    out += "| key | is | otherwise | says |\n| --- | --- | --- | --- |\n";
+    out += "| key | value | default | description |\n| --- | --- | --- | --- |\n";
     for (const io::Key* key : table.keys)
-      out += "| `" + shown_name(*key) + "` | " + cell(type_words(*key)) + " | " +
-             cell(default_words(*key)) + " | " + cell(sentence_of(*key)) + " |\n";
+      out += "| `" + shown_name(*key) + "` | " + cell(type_text(*key)) + " | " +
+             cell(default_text(*key)) + " | " + cell(sentence_of(*key)) + " |\n";
     const auto meanings = meanings_of(table);
     if (!meanings.empty()) out += "\n";
     for (const auto& [key, word, sentence] : meanings)
@@ -38,8 +38,9 @@ std::string with_section(const std::string& text, const std::string& name,
                     last = "<!-- " + name + ": to here -->\n";
   const size_t begin = text.find(first), end = text.find(last);
   if (begin == std::string::npos || end == std::string::npos || end < begin)
-    throw Error::input(std::string("a file with the lines\n") + first + last +
-                       "has a reference between them; this one has not");
+    throw Error::input(
+        std::string("a file with the lines\n") + first + last +
+        "is needed, because the reference is written between these lines; this file lacks them");
   return text.substr(0, begin) + first + "\n" + section + "\n" + text.substr(end);
 }
 

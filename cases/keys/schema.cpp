@@ -20,10 +20,10 @@ std::string below(const std::string& path, const io::Key& key) {
 }
 
 Json number_schema(const io::Quantity& q) {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
+  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   Json out{{"type", "number"}};
-  if (q.lower > -kAny) out[q.lower_open ? "exclusiveMinimum" : "minimum"] = q.lower;
-  if (q.upper < kAny) out[q.upper_open ? "exclusiveMaximum" : "maximum"] = q.upper;
+  if (q.lower > -kUnlimited) out[q.lower_open ? "exclusiveMinimum" : "minimum"] = q.lower;
+  if (q.upper < kUnlimited) out[q.upper_open ? "exclusiveMaximum" : "maximum"] = q.upper;
   return out;
 }
 
@@ -79,8 +79,9 @@ Json key_schema(const std::vector<const io::Key*>& keys, const std::string& path
       if (std::find(forms.begin(), forms.end(), each) == forms.end())
         forms.push_back(std::move(each));
     }
-    description += (description.empty() ? "" : "\n") + sentence_of(*key) + " " + type_words(*key) +
-                   "; " + (key->is_needed() ? "" : "otherwise ") + default_words(*key);
+    description +=
+        (description.empty() ? "" : "\n") + sentence_of(*key) + " Value: " + type_text(*key) +
+        ". Default: " + (key->is_needed() ? "none, the key is required" : default_text(*key)) + ".";
   }
   Json out = forms.size() == 1 ? forms[0] : Json{{"anyOf", forms}};
   out["description"] = description;

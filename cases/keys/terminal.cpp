@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kColumns = 4;
 using Cells = std::array<std::string, kColumns>;
-using Widths = std::array<size_t, kColumns>;
+using ColumnWidths = std::array<size_t, kColumns>;
 
 /// Returns lines of at most `width` characters; a longer word gets a separate line.
 std::vector<std::string> wrapped(const std::string& text, size_t width) {
@@ -28,7 +28,7 @@ std::vector<std::string> wrapped(const std::string& text, size_t width) {
   return lines;
 }
 
-void write_row(const Cells& cells, const Widths& widths, std::string& out) {
+void write_row(const Cells& cells, const ColumnWidths& widths, std::string& out) {
   std::array<std::vector<std::string>, kColumns> lines;
   size_t height = 0;
   for (size_t c = 0; c < kColumns; ++c) {
@@ -52,9 +52,9 @@ void write_table(const KeyTable& table, size_t width, std::string& out) {
   if (table.own) out += ": " + table.own->sentence;
   out += "\n";
   std::vector<Cells> rows;
-  Widths widths{};
+  ColumnWidths widths{};
   for (const io::Key* key : table.keys) {
-    rows.push_back({shown_name(*key), type_words(*key), default_words(*key), sentence_of(*key)});
+    rows.push_back({shown_name(*key), type_text(*key), default_text(*key), sentence_of(*key)});
     widths[0] = std::max(widths[0], rows.back()[0].size());
   }
   // The width that remains beside the names is divided between type, default and sentence.

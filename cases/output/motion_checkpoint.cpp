@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 const std::string kFormat = "flexmorph motion 2";
 /// Largest fraction of the time between two writes that a write may take.
-constexpr double kShare = 0.05;
+constexpr double kTimeFraction = 0.05;
 
 /// Returns the contents of a file; empty if it cannot be read.
 std::string contents_of(const std::string& path) {
@@ -53,26 +53,28 @@ std::optional<std::string> MotionCheckpoint::read(std::string& why) const {
   const std::string text = contents_of(path_);
   const size_t head = text.find('\n');
   if (!text.starts_with(kFormat + ", ") || head == std::string::npos) {
-    why = "it is none of this format";
+    why = "it does not have the format of a checkpoint";
     return {};
   }
   const std::string version = text.substr(kFormat.size() + 2, head - kFormat.size() - 2);
   if (version != kVersion) {
-    why = "it was written by version " + version.substr(0, 40) + ", this is " + kVersion;
+    why = "it was written by version " + version.substr(0, 40) + ", but the program has version " +
+          kVersion;
     return {};
   }
   try {
-    Memory file(text.substr(head + 1));
+    Archive file(text.substr(head + 1));
     std::uint64_t sum = 0, about = 0;
     std::string rest, memory;
     file(sum, rest);
     if (checksum(rest) != sum) throw Error::input("");
-    Memory parts(std::move(rest));
+    Archive parts(std::move(rest));
     std::vector<std::string> frames;
     parts(about, frames, memory);
-    if (about != about_) why = "it is that of another case or design";
+    if (about != about_) why = "it belongs to another case or design";
     for (const std::string& frame : frames)
-      if (why.empty() && !fs::exists(folder_.path() + "/" + frame)) why = frame + " is missing";
+      if (why.empty() && !fs::exists(folder_.path() + "/" + frame))
+        why = "the file " + frame + " is missing";
     if (why.empty()) return memory;
   } catch (const Error&) {
     why = "it is damaged";
@@ -81,12 +83,12 @@ std::optional<std::string> MotionCheckpoint::read(std::string& why) const {
 }
 
 bool MotionCheckpoint::is_due() const {
-  return Clock::now() - written_ >= std::max(every_, took_ / kShare);
+  return Clock::now() - written_ >= std::max(every_, took_ / kTimeFraction);
 }
 
 void MotionCheckpoint::write(const std::string& memory, std::vector<std::string> frames) {
   const Clock::time_point begin = Clock::now();
-  Memory parts, file;
+  Archive parts, file;
   std::string contents = memory;
   parts(about_, frames, contents);
   std::string rest = parts.bytes();

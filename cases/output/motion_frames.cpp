@@ -113,6 +113,6 @@ void SnapshotWriter::add(const StepRecord& step) {
   snapshots_.push_back(std::move(frame));
 }
 
-void SnapshotWriter::remember(Memory& memory) { memory(snapshots_); }
+void SnapshotWriter::archive(Archive& memory) { memory(snapshots_); }
 
 }  // namespace flexmorph::cases

@@ -47,7 +47,7 @@ class FrameWriter : public StepWriter {
   FrameWriter(const BodyShapes& shapes, double every, RunFolder& folder)
       : shapes_(shapes), every_(every), folder_(folder) {}
   void add(const StepRecord& step) override;
-  void remember(Memory& memory) override { folder_.remember_frames(memory); }
+  void archive(Archive& memory) override { folder_.archive_frames(memory); }
 
  private:
   void add_bodies(const StepRecord& step);
@@ -68,7 +68,7 @@ class SnapshotWriter : public StepWriter {
   SnapshotWriter(const BodyShapes& shapes, int n, std::vector<io::PlaneFrame>& snapshots)
       : shapes_(shapes), n_(n), snapshots_(snapshots) {}
   void add(const StepRecord& step) override;
-  void remember(Memory& memory) override;
+  void archive(Archive& memory) override;
 
  private:
   const BodyShapes& shapes_;

@@ -2,13 +2,17 @@
 
 namespace flexmorph::cases {
 
-const char* const kParaViewScript = R"py("""Opens this run in ParaView, coloured.
+const char* const kParaViewScript =
+    R"py("""Opens the results of this run in ParaView and colours them.
+
+Start the script in the run folder with
 
     paraview --script=paraview.py
 
-in the run folder; or, in ParaView, View > Python Shell > Run Script. What there is: the motion
-with the density of its designs (without designs: strain energy per area), the history of the
-design, and stresses on the judged outline. The eyes in the pipeline browser choose what is seen.
+or select View > Python Shell > Run Script in ParaView. The script loads the motion, the history of
+the design and the stresses on the verified outline, if the run has them. The motion is coloured by
+the density of the designs, or by the strain energy per area if the case has no designs. The eye
+symbols in the pipeline browser show and hide the sources.
 """
 
 import glob
@@ -18,7 +22,7 @@ from paraview import simple
 
 try:
     run = os.path.dirname(os.path.abspath(__file__))
-except NameError:  # ParaView ran the text, not the file
+except NameError:  # ParaView executes the text of the script without a file
     run = os.getcwd()
 
 GREY = [0, 0.92, 0.92, 0.92, 1, 0.15, 0.2, 0.35]
@@ -30,7 +34,7 @@ seen = []
 
 
 def show(source, name, field, where, visible):
-    """Shows a source in the colours of a field, if it is to be seen at first."""
+    """Adds a source with the colours of a field and hides it unless it is visible at first."""
     simple.RenameSource(name, source)
     source.UpdatePipeline()
     display = simple.Show(source, view)
@@ -49,7 +53,7 @@ def colour(display, field, where, visible):
     colours = simple.GetColorTransferFunction(field)
     if field == "density":
         colours.RGBPoints = GREY
-        colours.NanColor = [0.8, 0.3, 0.2]  # rigid bodies, hubs and point masses have none
+        colours.NanColor = [0.8, 0.3, 0.2]  # rigid bodies, hubs, point masses: no density
     else:
         colours.ApplyPreset("Viridis (matplotlib)", True)
         display.RescaleTransferFunctionToDataRange(False, True)
@@ -66,15 +70,15 @@ designed = path_of("history.csv") is not None
 if motion:
     field = "density" if designed else "strain_energy"
     show(simple.PVDReader(FileName=motion), "motion", field, "CELLS", True)
-judged = sorted(glob.glob(os.path.join(run, "design*.vtu")))
-for path in judged:
+verified = sorted(glob.glob(os.path.join(run, "design*.vtu")))
+for path in verified:
     reader = simple.XMLUnstructuredGridReader(FileName=[path])
     name = os.path.basename(path)
     show(reader, name, "von_mises", "POINTS", not motion)
 history = path_of("design/iterations.pvd")
 if history:
     reader = simple.PVDReader(FileName=history)
-    show(reader, "design by iteration", "density", "CELLS", not motion and not judged)
+    show(reader, "design by iteration", "density", "CELLS", not motion and not verified)
 
 if seen:
     bounds = seen[0].GetDataInformation().GetBounds()
@@ -85,7 +89,7 @@ if seen:
     simple.ResetCamera(view)
     simple.Render(view)
 else:
-    print("nothing in " + run + " can be shown")
+    print("The folder " + run + " contains no results that ParaView can show.")
 )py";
 
 }  // namespace flexmorph::cases

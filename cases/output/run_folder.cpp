@@ -91,7 +91,7 @@ void RunFolder::write_part(const std::string& body, FramePart part) {
   });
 }
 
-void RunFolder::remember_frames(Memory& memory) {
+void RunFolder::archive_frames(Archive& memory) {
   writer_.wait();
   memory(motion_frames_, frames_, lost_frames_, why_lost_);
   size_t n = shapes_.size();
@@ -99,7 +99,7 @@ void RunFolder::remember_frames(Memory& memory) {
   shapes_.resize(n);
   for (io::SurfaceFrame& shape : shapes_)
     memory(shape.title, shape.mesh.dimension, shape.mesh.points, shape.mesh.quads, shape.values);
-  if (memory.puts_back())
+  if (memory.is_restoring())
     for (const Frame& frame : frames_) motion_.add(frame.time, frame.file, frame.part);
 }
 

@@ -11,7 +11,7 @@
 #include "cases/output/surface.h"
 #include "cases/results/static_loads.h"
 #include "fem/dynamics/motion.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 #include "io/background.h"
 #include "io/output_folder.h"
 #include "io/plane_frames.h"
@@ -113,7 +113,7 @@ class RunFolder {
     /// Values of every iteration: number of the row, compliance [J], volume fraction [-], KKT
     /// residual [-]; and of crisp evaluations: number of the row, compliance of the crisp design
     /// [J].
-    std::vector<double> row, compliance, volume, kkt, sharp_row, sharp_compliance;
+    std::vector<double> row, compliance, volume, kkt, crisp_row, crisp_compliance;
   };
   /// Returns the histories of all designed bodies.
   const std::vector<History>& histories() const { return histories_; }
@@ -126,7 +126,7 @@ class RunFolder {
   const std::vector<DesignPictures>& design_pictures() const { return pictures_; }
 
   /// Saves or restores the list of frames of a motion; when restored, their index is written again.
-  void remember_frames(Memory& memory);
+  void archive_frames(Archive& memory);
   /// Returns the names of the files of all frames of a motion, as for file().
   std::vector<std::string> frames() const;
 
@@ -176,7 +176,7 @@ class RunFolder {
     std::string file;
     double time = 0;
     int part = 0;
-    void remember(Memory& memory) { memory(file, time, part); }
+    void archive(Archive& memory) { memory(file, time, part); }
   };
   std::vector<Frame> frames_;
   std::string missing_;

@@ -17,16 +17,16 @@ constexpr double kCoarse = 0.05;
 Box frame_of(const Grid& g) { return {{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}; }
 
 /// Adds the location of a support or load to a drawing: a point, a line, a box or a circle.
-void add_place(const Place& place, io::DrawingLayer& out) {
-  const Vec2 &a = place.box.lower, &b = place.box.upper;
-  if (place.kind == Place::Kind::disc)
-    out.rings.push_back({full_circle(place.disc.center, place.disc.radius)});
+void add_location(const NodeRegion& location, io::DrawingLayer& out) {
+  const Vec2 &a = location.box.lower, &b = location.box.upper;
+  if (location.kind == NodeRegion::Kind::disc)
+    out.rings.push_back({full_circle(location.disc.center, location.disc.radius)});
   else if (a == b)
     out.shapes.push_back({a});
   else if ((b - a).minCoeff() == 0)
     out.shapes.push_back({a, b});
   else
-    out.rings.push_back(lines_of(corners_of(place.box)));
+    out.rings.push_back(lines_of(corners_of(location.box)));
 }
 
 /// Returns drawing layers with the domain and, for a static plate, its supports and loads.
@@ -38,9 +38,9 @@ std::vector<io::DrawingLayer> drawn_besides(const Scene& scene, const mmc::BodyP
     for (CurveRing& hole : r.holes) domain.rings.push_back(std::move(hole));
   }
   if (!scene.domain) return {domain};
-  for (const PlaneSupport& s : scene.domain->supports) add_place(s.place, supports);
-  for (const LoadCase& load : scene.domain->loads)
-    for (const PlaneForce& f : load.forces) add_place(f.place, loads);
+  for (const PlaneSupport& s : scene.domain->supports) add_location(s.location, supports);
+  for (const StaticLoadCase& load : scene.domain->loads)
+    for (const PlaneForce& f : load.forces) add_location(f.location, loads);
   return {domain, supports, loads};
 }
 
@@ -72,11 +72,11 @@ void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
 
 void RunFolder::write_static_loads(const Domain& domain, std::span<const StaticLoad> loads) {
   std::vector<std::string> columns;
-  for (const Quantity<StaticLoad>& q : static_load_quantities()) columns.emplace_back(q.name);
+  for (const ResultQuantity<StaticLoad>& q : static_load_quantities()) columns.emplace_back(q.name);
   io::CsvWriter csv(folder_.file("loads/" + domain.name + ".csv"), columns);
   for (const StaticLoad& load : loads) {
     std::vector<io::Cell> row;
-    for (const Quantity<StaticLoad>& q : static_load_quantities())
+    for (const ResultQuantity<StaticLoad>& q : static_load_quantities())
       row.emplace_back(text_of(q.value(load)));
     csv.row(row);
   }
@@ -116,12 +116,14 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
   // An outline that touches itself is no valid solid; the other files contain it nevertheless.
   const std::string name = "design" + stem + ".step";
   const std::string why = io::write_step(folder_.file(name), curves, thickness);
-  if (!why.empty()) missing_ += name + " is not there: OpenCASCADE makes no solid of it: " + why;
+  if (!why.empty())
+    missing_ += (missing_.empty() ? "" : "; ") + name +
+                " was not written, because OpenCASCADE cannot make a solid of the outline: " + why;
   if (!scene_.output.plots) return;
   pictures_of(problem.body).result = io::outline_svg(regions, frame, 5);
-  const auto& sharp = outcome.sharp.fractions;
+  const auto& crisp = outcome.crisp.fractions;
   io::write_png(folder_.file("plots/design" + stem + ".png"), problem.grid,
-                {sharp.data(), static_cast<size_t>(sharp.size())});
+                {crisp.data(), static_cast<size_t>(crisp.size())});
 }
 
 void RunFolder::keep_outline(const mmc::BodyProblem& problem, const std::string& name) {
@@ -132,7 +134,7 @@ void RunFolder::keep_outline(const mmc::BodyProblem& problem, const std::string&
 
 void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles,
                              std::span<const mmc::CorrectedCycle> corrected) {
-  std::vector<std::string> columns = {"cycle",         "body",    "compliance", "sharp_compliance",
+  std::vector<std::string> columns = {"cycle",         "body",    "compliance", "crisp_compliance",
                                       "design_change", "measure", "best"};
   const size_t n = columns.size();
   if (!corrected.empty())
@@ -142,7 +144,7 @@ void RunFolder::write_cycles(std::span<const mmc::CycleVerdict> cycles,
   io::CsvWriter csv(folder_.file("cycles.csv"), columns);
   for (const mmc::CycleVerdict& c : cycles)
     for (const mmc::BodyVerdict& b : c.bodies) {
-      std::vector<io::Cell> row = {c.cycle,         b.body,    b.compliance, b.sharp_compliance,
+      std::vector<io::Cell> row = {c.cycle,         b.body,    b.compliance, b.crisp_compliance,
                                    b.design_change, c.measure, c.best};
       row.resize(columns.size());
       csv.row(row);

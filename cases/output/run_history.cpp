@@ -26,8 +26,8 @@ const std::vector<std::string> kHistoryColumns = {"body",
                                                   "kkt",
                                                   "change",
                                                   "band",
-                                                  "sharp_compliance",
-                                                  "sharp_volume",
+                                                  "crisp_compliance",
+                                                  "crisp_volume",
                                                   "connected",
                                                   "min_feature"};
 /// Last columns; the responses of further_rows() are between kHistoryColumns and these columns.
@@ -66,8 +66,8 @@ void RunFolder::begin_history(Begin begin) {
   for (const std::string& name : kHistorySeconds)
     phases_.emplace_back(name.substr(std::string("seconds_").size()), 0);
   const std::string path = folder_.file("history.csv");
-  if (begin == Begin::go_on && std::filesystem::exists(path)) {
-    history_ = std::make_unique<io::CsvWriter>(io::CsvWriter::go_on(path, columns.size()));
+  if (begin == Begin::keep_running && std::filesystem::exists(path)) {
+    history_ = std::make_unique<io::CsvWriter>(io::CsvWriter::keep_running(path, columns.size()));
     const io::CsvTable old = io::read_csv(path);
     if (old.columns == columns) {
       for (size_t r = 0; r < old.n_rows(); ++r) old_rows_.push_back(old.row(r));
@@ -78,9 +78,9 @@ void RunFolder::begin_history(Begin begin) {
 }
 
 bool RunFolder::wants_frame(int iteration) const {
-  const Output& wish = scene_.output;
-  return wish.vtk && wish.design_every > 0 &&
-         (iteration == 1 || iteration % wish.design_every == 0);
+  const Output& request = scene_.output;
+  return request.vtk && request.design_every > 0 &&
+         (iteration == 1 || iteration % request.design_every == 0);
 }
 
 bool RunFolder::has_frames(const mmc::RowOfHistory& row) const {
@@ -132,16 +132,16 @@ void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::st
   h.compliance.push_back(number("compliance"));
   h.volume.push_back(number("volume"));
   h.kkt.push_back(number("kkt"));
-  if (const double sharp = number("sharp_compliance"); std::isfinite(sharp)) {
-    h.sharp_row.push_back(h.row.back());
-    h.sharp_compliance.push_back(sharp);
+  if (const double crisp = number("crisp_compliance"); std::isfinite(crisp)) {
+    h.crisp_row.push_back(h.row.back());
+    h.crisp_compliance.push_back(crisp);
   }
 }
 
 /// Writes the VTK files of an intermediate design.
 void RunFolder::write_design_frame(const mmc::IterationReport& r) {
   const double start = thread_seconds();
-  const mmc::CellFactors& factors = r.state.factors();
+  const mmc::CellScaleFactors& factors = r.state.factors();
   // The weighted strain energy of a cell is Σ w ½ uᵀ K_cell u, and the derivative by its stiffness
   // scale factor contains uᵀ K_cell u. The energies of the loads and of held thermal growth are
   // added. Their mixed terms are left out because they sum to zero over the cells.
@@ -183,21 +183,21 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
   h.compliance.push_back(r.state.compliance());
   h.volume.push_back(r.state.volume());
   h.kkt.push_back(r.iterate.kkt);
-  if (r.sharp) {
-    h.sharp_row.push_back(h.row.back());
-    h.sharp_compliance.push_back(r.sharp->compliance);
+  if (r.crisp) {
+    h.crisp_row.push_back(h.row.back());
+    h.crisp_compliance.push_back(r.crisp->compliance);
   }
   write_history_row(r);
 }
 
 void RunFolder::write_history_row(const mmc::IterationReport& r) {
-  io::Cell sharp_c, sharp_v, connected, min_feature;
-  if (r.sharp) {
-    sharp_c = r.sharp->compliance;
-    sharp_v = r.sharp->volume;
-    connected = r.sharp->connectivity.connected;
-    if (r.sharp->features && std::isfinite(r.sharp->features->solid))
-      min_feature = r.sharp->features->solid;
+  io::Cell crisp_c, crisp_v, connected, min_feature;
+  if (r.crisp) {
+    crisp_c = r.crisp->compliance;
+    crisp_v = r.crisp->volume;
+    connected = r.crisp->connectivity.connected;
+    if (r.crisp->features && std::isfinite(r.crisp->features->solid))
+      min_feature = r.crisp->features->solid;
   }
   const mmc::ComplianceEvaluator::Seconds s = r.state.seconds();
   const auto number = [](double v) { return std::isfinite(v) ? io::Cell(v) : io::Cell(); };
@@ -212,8 +212,8 @@ void RunFolder::write_history_row(const mmc::IterationReport& r) {
                                r.iterate.kkt,
                                r.iterate.change,
                                r.state.band() / r.problem.grid.dx(),
-                               sharp_c,
-                               sharp_v,
+                               crisp_c,
+                               crisp_v,
                                connected,
                                min_feature};
   for (const mmc::ResponseRow* further : further_rows(scene_)) {
@@ -221,7 +221,7 @@ void RunFolder::write_history_row(const mmc::IterationReport& r) {
     row.push_back(values ? io::Cell(values->maxCoeff()) : io::Cell());
   }
   const std::array seconds = {r.state.seconds_tdf(),
-                              r.sharp ? r.sharp->seconds_outlines : 0,
+                              r.crisp ? r.crisp->seconds_outlines : 0,
                               s.factor,
                               s.solve,
                               s.sensitivity,

@@ -14,8 +14,8 @@ void TableWriter::add(const StepRecord& step) {
   csv_->row(cells_);
 }
 
-void TableWriter::remember(Memory& memory) {
-  if (!memory.puts_back() || table_.n_rows() == 0) return;
+void TableWriter::archive(Archive& memory) {
+  if (!memory.is_restoring() || table_.n_rows() == 0) return;
   std::vector<std::vector<io::Cell>> rows(table_.n_rows());
   for (const std::vector<double>& column : table_.values)
     for (size_t r = 0; r < rows.size(); ++r) rows[r].emplace_back(column[r]);

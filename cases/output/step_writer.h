@@ -5,7 +5,7 @@
 
 #include "cases/results/series.h"
 #include "fem/model/workspace.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 #include "io/tables.h"
 
 /// Output of the steps of a motion or of a path of equilibria.
@@ -29,7 +29,7 @@ class StepWriter {
   virtual void add(const StepRecord& step) = 0;
   /// Saves the data that the writer keeps between two steps to an archive, or restores them from
   /// it.
-  virtual void remember(Memory&) {}
+  virtual void archive(Archive&) {}
 };
 
 /// Collects the rows in a table.
@@ -39,7 +39,7 @@ class SeriesWriter : public StepWriter {
   /// @param table  table whose columns are set; outlives the writer
   explicit SeriesWriter(Series& table) : table_(table) {}
   void add(const StepRecord& step) override { table_.add_row(step.row); }
-  void remember(Memory& memory) override { memory(table_.values); }
+  void archive(Archive& memory) override { memory(table_.values); }
 
  private:
   Series& table_;
@@ -55,7 +55,7 @@ class TableWriter : public StepWriter {
   TableWriter(std::string path, const Series& table) : path_(std::move(path)), table_(table) {}
   void add(const StepRecord& step) override;
   /// Writes all rows of the table again when the writer is restored; it saves nothing.
-  void remember(Memory& memory) override;
+  void archive(Archive& memory) override;
 
  private:
   void begin(std::span<const std::vector<io::Cell>> rows);

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "cases/scene/elements/row.h"
-#include "fem/dynamics/starts/carrier.h"
+#include "fem/dynamics/starts/driven_frame.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -99,7 +99,7 @@ Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem
   for (size_t i = 0; i < along.size(); ++i)
     for (size_t j = 0; j < across.size(); ++j) {
       const Vec2 material(along[i], across[j]);
-      const Vec3 r = fem::point_position(body, x, material), u = r - pose.place(material);
+      const Vec3 r = fem::point_position(body, x, material), u = r - pose.location(material);
       for (int c = 0; c < dim; ++c) {
         out.mesh.points.push_back(r[c]);
         out.displacement.push_back(u[c]);
@@ -129,7 +129,7 @@ DesignedSurface designed_surface(const fem::Body& body, const fem::State& x,
     for (int j = 0; j <= ny; ++j) {
       const Vec2 material = grid.node_position(i, j);
       const Vec2 p = fem::point_motion(body, x, material).position;
-      const Vec3 from = pose.place(material);
+      const Vec3 from = pose.location(material);
       for (int c = 0; c < 2; ++c) {
         out.mesh.points.push_back(p[c]);
         out.displacement.push_back(p[c] - from[c]);

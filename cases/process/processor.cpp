@@ -32,12 +32,13 @@ void limit_vectors() {
   else if (most == "v3")
     limit_vector_level(VectorLevel::v3);
   else if (most != "v4")
-    throw Error::input("FLEXMORPH_VECTORS=" + std::string(most) + ": it is baseline, v3 or v4");
+    throw Error::input("FLEXMORPH_VECTORS=" + std::string(most) +
+                       ": the value is baseline, v3 or v4");
 }
 
 }  // namespace
 
-void settle_processor(int threads, char** argv) {
+void set_up_processor(int threads, char** argv) {
   limit_vectors();
   keep_mpi_off_at_load();
   const char* mark = "FLEXMORPH_THREADS";  // set by the first execution of the process

@@ -20,7 +20,7 @@ namespace flexmorph {
 /// of main(), before any action that must not be repeated.
 /// @param argv  arguments of main()
 /// @throws Error (input) if FLEXMORPH_VECTORS has another value
-void settle_processor(int threads, char** argv);
+void set_up_processor(int threads, char** argv);
 
 /// Returns the kernels of OpenBLAS for this processor unless OPENBLAS_CORETYPE gives others:
 /// "SkylakeX" (AVX-512), "Haswell" (AVX2 with FMA), or an empty text, which leaves the choice to

@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include "fem/dynamics/mesh_changes/growth.h"
+#include "fem/dynamics/mesh_changes/moving_root.h"
 
 namespace flexmorph::cases {
 namespace {
 
 constexpr int kDegree = 8;  // degree of the quadrature for strains: 5 Gauss points per direction
 
-Vec2 place(const fem::Body& body, const fem::State& x, const Vec2& material) {
+Vec2 location(const fem::Body& body, const fem::State& x, const Vec2& material) {
   return fem::point_position(body, x, material).head<2>();
 }
 
@@ -22,7 +22,7 @@ double left_of(const Vec2& a, const Vec2& b, const Vec2& c) {
 std::vector<fem::ShapeTable> gauss_points(const fem::Body& body) {
   std::vector<fem::ShapeTable> out(static_cast<size_t>(body.element->n_elements()));
   for (int e = 0; e < body.element->n_elements(); ++e)
-    body.element->tabulate(e, kDegree, fem::Tabulate::gradient, {}, fem::FactorKind::none,
+    body.element->tabulate(e, kDegree, fem::Tabulate::gradient, {}, fem::ScaleFactorKind::none,
                            out[static_cast<size_t>(e)]);
   return out;
 }
@@ -74,7 +74,7 @@ std::pair<Vec2, double> second_moment(const fem::Body& body,
 
 std::vector<ColumnInfo> BodyMeasures::columns(const Scene& scene) {
   std::vector<ColumnInfo> out;
-  for (const Measure& measure : scene.measures)
+  for (const MeasureRequest& measure : scene.measures)
     for (const std::string& quantity : measure.quantities)
       for (const MeasuredColumn& c : columns_of_quantity(quantity))
         out.push_back({measure.body + "." + c.name, c.unit, c.meaning, ColumnGroup::measured});
@@ -82,7 +82,7 @@ std::vector<ColumnInfo> BodyMeasures::columns(const Scene& scene) {
 }
 
 BodyMeasures::BodyMeasures(const Scene& scene, const fem::Model& model, const fem::State& start) {
-  for (const Measure& measure : scene.measures) {
+  for (const MeasureRequest& measure : scene.measures) {
     const Body& body = scene.body(measure.body);
     Measured m;
     m.measure = &measure;
@@ -90,7 +90,7 @@ BodyMeasures::BodyMeasures(const Scene& scene, const fem::Model& model, const fe
     const fem::Body& built = model.bodies()[m.body];
     const double y = body.low() + 0.5 * body.width;
     m.material = {Vec2(0, y), Vec2(0.5 * body.length, y), Vec2(body.length, y)};
-    for (size_t i = 0; i < 3; ++i) m.start[i] = place(built, start, m.material[i]);
+    for (size_t i = 0; i < 3; ++i) m.start[i] = location(built, start, m.material[i]);
     m.sag = left_of(m.start[0], m.start[1], m.start[2]);
     const auto asks = [&](const char* quantity) {
       return std::find(measure.quantities.begin(), measure.quantities.end(), quantity) !=
@@ -99,7 +99,7 @@ BodyMeasures::BodyMeasures(const Scene& scene, const fem::Model& model, const fe
     if (asks("max_elastic_strain") || asks("free_expansion")) m.tables = gauss_points(built);
     if (asks("free_expansion")) {
       const auto [center, polar] = second_moment(built, m.tables);
-      m.arm = place(built, model.reference(), m.material[2]) - center;
+      m.arm = location(built, model.reference(), m.material[2]) - center;
       m.polar = polar;
     }
     bodies_.push_back(std::move(m));
@@ -125,12 +125,12 @@ void append_quantity(const BodyMeasures::Measured& m, const std::string& quantit
   } else if (quantity == "max_elastic_strain") {
     row.push_back(largest_strain(body, x, 1 + at.elongation, m.tables));
   } else if (quantity == "midpoint_deflection") {
-    row.push_back(left_of(place(body, x, m.material[0]), place(body, x, m.material[1]),
-                          place(body, x, m.material[2])) -
+    row.push_back(left_of(location(body, x, m.material[0]), location(body, x, m.material[1]),
+                          location(body, x, m.material[2])) -
                   m.sag);
   } else if (quantity == "end_displacements") {
     for (const size_t i : {0, 2}) {
-      const Vec2 u = place(body, x, m.material[i]) - m.start[i];
+      const Vec2 u = location(body, x, m.material[i]) - m.start[i];
       row.insert(row.end(), {u.x(), u.y()});
     }
   } else if (quantity == "end_velocity") {

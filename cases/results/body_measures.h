@@ -15,11 +15,11 @@ class BodyMeasures {
  public:
   /// A measured body with its data that are constant during a motion.
   struct Measured {
-    const Measure* measure = nullptr;  ///< The [[measure]] table of the body.
-    size_t body = 0;                   ///< Index of the body in the model.
-    std::array<Vec2, 3> material;      ///< Material points of the axis: root, middle, free end [m].
-    std::array<Vec2, 3> start;         ///< Positions of root, middle and free end at the start [m].
-    double sag = 0;                    ///< Deflection of the middle of the axis at the start [m].
+    const MeasureRequest* measure = nullptr;  ///< The [[measure]] table of the body.
+    size_t body = 0;                          ///< Index of the body in the model.
+    std::array<Vec2, 3> material;  ///< Material points of the axis: root, middle, free end [m].
+    std::array<Vec2, 3> start;     ///< Positions of root, middle and free end at the start [m].
+    double sag = 0;                ///< Deflection of the middle of the axis at the start [m].
 
     /// Shape functions at the Gauss points, per element; empty if no quantity needs them.
     std::vector<fem::ShapeTable> tables;

@@ -24,10 +24,10 @@ std::optional<double> number_of(const Value& value) {
 }
 
 /// Tells whether [expect] may contain this number of a design.
-bool can_be_expected(const Quantity<mmc::BodyOutcome>& q) {
-  static const std::string kNames[] = {"compliance",   "volume",      "sharp_compliance",
-                                       "sharp_volume", "islands",     "compliance_ratio",
-                                       "sharp_ratio",  "min_feature", "min_gap"};
+bool can_be_expected(const ResultQuantity<mmc::BodyOutcome>& q) {
+  static const std::string kNames[] = {"compliance",   "volume",      "crisp_compliance",
+                                       "crisp_volume", "islands",     "compliance_ratio",
+                                       "crisp_ratio",  "min_feature", "min_gap"};
   return std::find(std::begin(kNames), std::end(kNames), q.name) != std::end(kNames);
 }
 
@@ -57,10 +57,10 @@ std::optional<double> value_of(const Series& table, const std::string& name) {
 
 /// Returns a number of the outcome of a design; nothing for an unknown name.
 std::optional<double> design_value(const mmc::BodyOutcome& o, const std::string& name) {
-  for (const Quantity<mmc::BodyOutcome>& q : design_quantities())
+  for (const ResultQuantity<mmc::BodyOutcome>& q : design_quantities())
     if (name == q.name && can_be_expected(q)) return number_of(q.value(o));
   for (const auto& [figures, prefix] :
-       {std::pair{&o.further, std::string()}, {&o.sharp.further, std::string("sharp_")}})
+       {std::pair{&o.further, std::string()}, {&o.crisp.further, std::string("crisp_")}})
     for (const auto& [figure, value] : *figures)
       if (prefix + figure == name) return value;
   return {};
@@ -70,7 +70,8 @@ std::optional<double> design_value(const mmc::BodyOutcome& o, const std::string&
 /// error of the energy balance comes from the motion on the mesh of the scene, because only this
 /// motion computes it.
 std::optional<double> motion_value(const MotionResults& motions, const std::string& name) {
-  if (const auto& assessed = motions.assessed(); assessed && !name.starts_with(kDefectColumn)) {
+  if (const auto& assessed = motions.assessed();
+      assessed && !name.starts_with(kEnergyErrorColumn)) {
     const std::vector<size_t> tips = assessed->table.of_group(ColumnGroup::deflection);
     if (name == kAmplitude && !tips.empty())
       return largest_size(assessed->table.values[tips.front()]);
@@ -91,7 +92,7 @@ std::optional<double> find(const RunResult& result, const std::string& name) {
   return value_of(result.path->table, name);
 }
 
-std::string words_of(const Expectation& wanted) {
+std::string text_of(const Expectation& wanted) {
   std::string out;
   const auto add = [&](const std::string& words) { out += (out.empty() ? "" : ", ") + words; };
   if (wanted.value)
@@ -110,8 +111,8 @@ std::vector<Expected> compare_expectations(const Scene& scene, const RunResult& 
     e.name = name;
     e.found = find(result, name);
     e.holds = e.found && wanted.holds(*e.found);
-    e.words = name + " = " + (e.found ? io::to_text(*e.found, 9) : std::string("nothing")) +
-              ": expected " + words_of(wanted);
+    e.words = name + " = " + (e.found ? io::to_text(*e.found, 9) : std::string("not computed")) +
+              ": expected " + text_of(wanted);
     out.push_back(std::move(e));
   }
   return out;
@@ -123,10 +124,10 @@ void check_expectations(const PreparedCase& prepared) {
   std::vector<std::string> known;
   for (const Part part : parts_of(scene)) {
     if (part == Part::design) {
-      for (const Quantity<mmc::BodyOutcome>& q : design_quantities())
+      for (const ResultQuantity<mmc::BodyOutcome>& q : design_quantities())
         if (can_be_expected(q)) known.emplace_back(q.name);
       for (const mmc::ResponseRow* row : mmc::further_rows(scene.designs.front().goal))
-        for (const char* prefix : {"", "sharp_"}) known.push_back(prefix + mmc::key_of(*row));
+        for (const char* prefix : {"", "crisp_"}) known.push_back(prefix + mmc::key_of(*row));
       if (!scene.domain) known.insert(known.end(), {kAmplitude, kMotionRatio});
     } else {
       for (const std::string& column : candidates(prepared, part)) known.push_back(column);
@@ -139,10 +140,11 @@ void check_expectations(const PreparedCase& prepared) {
     const std::string column =
         name.ends_with(kLargest) ? name.substr(0, name.size() - kLargest.size()) : name;
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    throw Error::input(wanted.place + ": expect.\"" + name +
-                       "\": a run of this case has no such number; there are: " + joined(known) +
-                       "; of columns also their largest size, COLUMN.largest (--set expect= "
-                       "leaves them out)");
+    throw Error::input(
+        wanted.location + ": expect.\"" + name +
+        "\": a run of this case has no number with this name; possible names: " + joined(known) +
+        "; COLUMN.largest is the largest absolute value of a column (--set expect= "
+        "removes all expectations)");
   }
 }
 

@@ -7,8 +7,8 @@
 #include "cases/assembly/build.h"
 #include "cases/assembly/joints.h"
 #include "cases/scene/joints/row.h"
-#include "fem/dynamics/starts/carrier.h"
-#include "fem/dynamics/whole_momentum.h"
+#include "fem/dynamics/starts/driven_frame.h"
+#include "fem/dynamics/total_momentum.h"
 #include "fem/model/workspace_wrench.h"
 
 namespace flexmorph::cases {
@@ -67,16 +67,17 @@ void MechanismColumns::describe(const std::string& of,
 
 void MechanismColumns::describe_bodies() {
   for (const RigidBody& body : scene_.rigid_bodies) {
-    describe(body.name, {{"x", "m", "position of the rigid body's point along x"},
-                         {"y", "m", "position of the rigid body's point along y"},
-                         {"angle", "rad", "angle of the rigid body's first axis"}});
+    describe(body.name, {{"x", "m", "x coordinate of the origin of the body's frame"},
+                         {"y", "m", "y coordinate of the origin of the body's frame"},
+                         {"angle", "rad", "angle of the first axis of the body's frame"}});
     frames_.emplace_back().angle = body.angle;
   }
   if (!scene_.trajectory) return;
-  const Trajectory& t = *scene_.trajectory;
-  describe(t.body, {{"delta_x", "m", "position along x less that of the trajectory"},
-                    {"delta_y", "m", "position along y less that of the trajectory"},
-                    {"delta_angle", "rad", "angle less that of the trajectory"}});
+  const TargetTrajectory& t = *scene_.trajectory;
+  describe(t.body,
+           {{"delta_x", "m", "x coordinate of the body minus x coordinate of the trajectory"},
+            {"delta_y", "m", "y coordinate of the body minus y coordinate of the trajectory"},
+            {"delta_angle", "rad", "angle of the body minus angle of the trajectory"}});
   path_ = {scene_.motion_of(t.x), scene_.motion_of(t.y), scene_.motion_of(t.angle)};
 }
 
@@ -88,11 +89,11 @@ void MechanismColumns::describe_joints() {
     const Anchor about = joint.row->on_one_body ? joint.a : completed(scene_, joint.b, joint.a);
     joints_.push_back({&joint, about, driven});
     describe(joint.name,
-             {{"force_x", "N", "force of the joint on its body b along x"},
-              {"force_y", "N", "force of the joint on its body b along y"},
-              {"moment", "N m", "moment of the joint on its body b about the joint's point"}});
+             {{"force_x", "N", "x component of the force of the joint on body b"},
+              {"force_y", "N", "y component of the force of the joint on body b"},
+              {"moment", "N m", "moment of the joint on body b about the point of the joint"}});
     if (driven && !scene_.statics)
-      describe(joint.name, {{"power", "W", "power that the drive puts into the mechanism"}});
+      describe(joint.name, {{"power", "W", "power of the drive that enters the mechanism"}});
   }
 }
 
@@ -102,27 +103,32 @@ void MechanismColumns::describe_hubs() {
     for (const Joint& joint : scene_.joints)
       if (joint.holds_frame() && joint.to == hub.name) watched.joints.push_back(&joint);
     if (!watched.joints.empty()) watched.drive = hub_drive(scene_, *watched.joints[0]);
-    describe(hub.name, {{"force_x", "N", "force of the hub on what it holds along x"},
-                        {"force_y", "N", "force of the hub on what it holds along y"},
-                        {"moment", "N m", "moment of the hub on what it holds about its point"}});
+    describe(hub.name,
+             {{"force_x", "N", "x component of the force of the hub on its bodies"},
+              {"force_y", "N", "y component of the force of the hub on its bodies"},
+              {"moment", "N m", "moment of the hub on its bodies about the origin of the hub"}});
     if (!scene_.statics)
-      describe(hub.name, {{"power", "W", "power that the hub's drive puts into the mechanism"}});
+      describe(hub.name, {{"power", "W", "power of the hub's drive that enters the mechanism"}});
     if (scene_.in_space())
-      describe(hub.name, {{"force_z", "N", "force of the hub on what it holds along z"},
-                          {"moment_x", "N m", "moment of the hub on what it holds about x"},
-                          {"moment_y", "N m", "moment of the hub on what it holds about y"}});
+      describe(hub.name,
+               {{"force_z", "N", "z component of the force of the hub on its bodies"},
+                {"moment_x", "N m", "x component of the moment of the hub on its bodies"},
+                {"moment_y", "N m", "y component of the moment of the hub on its bodies"}});
   }
 }
 
 void MechanismColumns::describe_springs() {
   for (const Spring& spring : scene_.springs) {
     if (!spring.named) continue;
-    describe(spring.name, {{"force_x", "N", "force of the spring on its body b along x"},
-                           {"force_y", "N", "force of the spring on its body b along y"},
-                           {"moment", "N m", "moment of the spring on its body b about its point"},
-                           {"energy", "J", "energy that is stored in the spring"}});
+    describe(spring.name,
+             {{"force_x", "N", "x component of the force of the spring on body b"},
+              {"force_y", "N", "y component of the force of the spring on body b"},
+              {"moment", "N m", "moment of the spring on body b about the point of the spring"},
+              {"energy", "J", "energy stored in the spring"}});
     if (!scene_.statics)
-      describe(spring.name, {{"power", "W", "other power that enters through the spring"}});
+      describe(spring.name,
+               {{"power", "W",
+                 "power of the spring that does not change its stored energy, such as damping"}});
   }
 }
 
@@ -134,14 +140,14 @@ void append_wrench(const fem::Wrench& wrench, std::vector<double>& row) {
 
 void append_spring(const Scene& scene, const Spring& spring, fem::Workspace& model,
                    const fem::State& x, std::vector<double>& row) {
-  const auto& all = model.links();
+  const auto& all = model.force_elements();
   const auto found = std::find_if(all.begin(), all.end(),
                                   [&](const auto& link) { return link->name() == spring.name; });
   VectorXd force = VectorXd::Zero(model.n_dofs());
   (*found)->add_force(x, force);
   force = -force;  // force elements are on the left-hand side of the equations of motion
   const Anchor at = completed(scene, spring.b, spring.a);
-  const Vec2 about = model.place_motion({at.body, at.point, 0, {}}, x).position;
+  const Vec2 about = model.location_motion({at.body, at.point, 0, {}}, x).position;
   const std::string& body = spring.b.on_ground() ? spring.a.body : spring.b.body;
   append_wrench(fem::wrench_on(model.body(body), force, {about.x(), about.y(), 0}, x), row);
   row.push_back((*found)->energies(x).strain);
@@ -154,7 +160,7 @@ void MechanismColumns::append(fem::Workspace& model, const fem::State& x,
                               std::vector<double>& row) {
   const size_t first = row.size();
   if (is_free_) {
-    const fem::WholeMomentum all = fem::whole_momentum(model, x);
+    const fem::TotalMomentum all = fem::total_momentum(model, x);
     row.insert(row.end(), {all.linear.x(), all.linear.y(), all.angular});
   }
   for (size_t i = 0; i < frames_.size(); ++i) {
@@ -168,7 +174,7 @@ void MechanismColumns::append(fem::Workspace& model, const fem::State& x,
     const Joint& joint = *watched.joint;
     const size_t index = index_of(model, joint.name);
     const Vec2 about =
-        model.place_motion({watched.about.body, watched.about.point, 0, {}}, x).position;
+        model.location_motion({watched.about.body, watched.about.point, 0, {}}, x).position;
     const std::string& body = joint.b.on_ground() ? joint.a.body : joint.b.body;
     append_wrench(model.joint_wrench(index, body, {about.x(), about.y(), 0}, x), row);
     if (watched.driven && !scene_.statics) row.push_back(drive_power(model, index, x));
@@ -179,7 +185,7 @@ void MechanismColumns::append(fem::Workspace& model, const fem::State& x,
   for (size_t i = first; i < row.size(); ++i) row[i] += 0.0;  // converts -0 to 0
 }
 
-void MechanismColumns::remember(Memory& memory) {
+void MechanismColumns::archive(Archive& memory) {
   for (fem::FrameMotion& frame : frames_) memory(frame.angle);  // append() overwrites the rest
   memory(turns_);
 }

@@ -30,7 +30,7 @@ class MechanismColumns {
   /// @param x  state, with its Lagrange multipliers λ
   void append(fem::Workspace& model, const fem::State& x, std::vector<double>& row);
   /// Saves or restores the unwrapped angles, which are continuous across ±π.
-  void remember(Memory& memory);
+  void archive(Archive& memory);
 
  private:
   /// A named joint and the point about which its moment is computed.

@@ -18,19 +18,19 @@ void describe_points(const Scene& scene, const std::string& letter, const std::s
     }
 }
 
-bool has_tip(const Scene& scene, const fem::Growth& growth) {
+bool has_tip(const Scene& scene, const fem::MovingRoot& growth) {
   return !scene.body(growth.body).in_space() && growth.line == 0;
 }
 
 /// Returns the energy of a step that belongs to the column of a term.
 double fem::MotionStep::*energy_of_term(const std::string& column) {
   if (column == "energy.dissipated") return &fem::MotionStep::dissipated;
-  throw Error::input("no energy of a step is known for the column '" + column + "'");
+  throw Error::input("column '" + column + "': a time step computes no energy for this column");
 }
 
 }  // namespace
 
-double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x) {
+double tip_deflection(const fem::Model& model, const fem::MovingRoot& growth, const fem::State& x) {
   const fem::Body& body = model.body(growth.body);
   const fem::LineGrid& mesh = fem::grid_of(body);
   const fem::FrameMotion hub = growth.hub.at(model, x);
@@ -80,17 +80,18 @@ std::vector<ColumnInfo> path_columns(const Scene& scene) {
   return out;
 }
 
-MotionColumns::MotionColumns(const Scene& scene, std::span<const fem::Growth> growths, bool balance)
+MotionColumns::MotionColumns(const Scene& scene, std::span<const fem::MovingRoot> moving_roots,
+                             bool balance)
     : scene_(scene), balance_(balance), mechanism_(scene) {
   describe(kTimeColumn, "s", "time", ColumnGroup::abscissa);
-  describe_bodies(growths);
+  describe_bodies(moving_roots);
   describe_points(scene, "", "position", columns_);
-  describe_deflecting_points(growths);
+  describe_deflecting_points(moving_roots);
   for (const Body& body : scene.bodies)
     for (const BodyLine& line : body.lines)
       if (line.free)
         describe(body.name + ".line_" + std::to_string(line.index), "m",
-                 "material coordinate of a free line of the mesh", ColumnGroup::observed);
+                 "material coordinate of a free mesh line", ColumnGroup::observed);
   const std::vector<ColumnInfo> measured = BodyMeasures::columns(scene);
   columns_.insert(columns_.end(), measured.begin(), measured.end());
   columns_.insert(columns_.end(), mechanism_.columns().begin(), mechanism_.columns().end());
@@ -102,34 +103,35 @@ void MotionColumns::describe(const std::string& name, const char* unit, std::str
   columns_.push_back({name, unit, std::move(meaning), group});
 }
 
-void MotionColumns::describe_bodies(std::span<const fem::Growth> growths) {
-  for (const fem::Growth& growth : growths) {
+void MotionColumns::describe_bodies(std::span<const fem::MovingRoot> moving_roots) {
+  for (const fem::MovingRoot& growth : moving_roots) {
     const Body& body = scene_.body(growth.body);
     if (has_tip(scene_, growth)) deflecting_.push_back(&growth);
     // A free root already has a column for its material coordinate, so it needs no length.
-    if ((has_tip(scene_, growth) || body.flow) && !body.has_free_lines()) flowing_.push_back(&body);
+    if ((has_tip(scene_, growth) || body.flow) && !body.has_eulerian_lines())
+      flowing_.push_back(&body);
   }
-  for (const fem::Growth* growth : deflecting_)
+  for (const fem::MovingRoot* growth : deflecting_)
     describe(growth->body + kDeflectionEnding, "m",
-             "position of the middle of the free end across the hub's axis",
+             "deflection of the middle of the free end, perpendicular to the hub's axis",
              ColumnGroup::deflection);
   for (const Body* body : flowing_)
     describe(body->name + ".length", "m", "length of the body outside of its hub or sleeve",
              ColumnGroup::length);
 }
 
-void MotionColumns::describe_deflecting_points(std::span<const fem::Growth> growths) {
+void MotionColumns::describe_deflecting_points(std::span<const fem::MovingRoot> moving_roots) {
   for (const Observe& o : scene_.observed)
     for (const BodyDesign& design : scene_.designs) {
       const Body& body = scene_.body(o.body);
       if (design.body != o.body || body.in_space()) continue;
       DeflectingPoint at{&o, nullptr, {Vec2(0, body.low()), Vec2(0, body.low() + body.width)}};
-      for (const fem::Growth& growth : growths)
+      for (const fem::MovingRoot& growth : moving_roots)
         if (growth.body == o.body) at.growth = &growth;
       if (design.link) at.line = design.link->pins;
       points_.push_back(at);
       describe(o.body + "." + o.name + kAcrossEnding, "m",
-               "displacement of the observed point across its undeformed body",
+               "displacement of the observed point perpendicular to the undeformed body",
                ColumnGroup::across);
     }
 }
@@ -139,20 +141,21 @@ void MotionColumns::describe_energies() {
   describe(kStrainColumn, "J", "strain energy of the model", ColumnGroup::energy);
   describe(kPotentialColumn, "J", "potential energy of weight and applied forces",
            ColumnGroup::energy);
-  describe(kDefectColumn, "J", "energy less that of the start and the work of all powers since",
+  describe(kEnergyErrorColumn, "J",
+           "energy error: energy minus initial energy minus work of all powers",
            ColumnGroup::energy);
   if (!balance_) return;
   for (const std::string& name : columns_of_terms(scene_)) {
-    describe(name, "J", "energy that terms of bodies have dissipated", ColumnGroup::term);
+    describe(name, "J", "energy dissipated by the terms of the bodies", ColumnGroup::term);
     terms_.push_back(energy_of_term(name));
   }
   if (!scene_.is_mechanism()) return;
   describe("power.drive", "W", "power of all drives", ColumnGroup::power);
-  describe("power.feed", "W", "power that pushes material through the mesh", ColumnGroup::power);
-  describe("power.inflow", "W", "energy that entering material brings along, per time",
+  describe("power.feed", "W", "power that moves the material through the mesh", ColumnGroup::power);
+  describe("power.inflow", "W", "energy per time that entering material carries",
            ColumnGroup::power);
   if (scene_.has_heat())
-    describe("power.heat", "W", "power of the temperatures", ColumnGroup::power);
+    describe("power.heat", "W", "power of the prescribed temperatures", ColumnGroup::power);
 }
 
 std::span<const double> MotionColumns::row(const fem::MotionStep& step) {
@@ -172,7 +175,7 @@ std::span<const double> MotionColumns::row(const fem::MotionStep& step) {
 }
 
 void MotionColumns::append_bodies(const fem::MotionStep& step) {
-  for (const fem::Growth* growth : deflecting_)
+  for (const fem::MovingRoot* growth : deflecting_)
     row_.push_back(tip_deflection(step.model, *growth, step.x));
   for (const Body* body : flowing_) row_.push_back(body->length_at(step.x.t));
   for (const Observe& o : scene_.observed) {
@@ -187,8 +190,8 @@ void MotionColumns::append_bodies(const fem::MotionStep& step) {
 }
 
 void MotionColumns::append_energies(const fem::MotionStep& step) {
-  row_.insert(row_.end(),
-              {step.energies.kinetic, step.energies.strain, step.energies.potential, step.defect});
+  row_.insert(row_.end(), {step.energies.kinetic, step.energies.strain, step.energies.potential,
+                           step.energy_error});
   if (!balance_) return;
   for (const auto energy : terms_) row_.push_back(step.*energy);
   if (!scene_.is_mechanism()) return;
@@ -196,11 +199,11 @@ void MotionColumns::append_energies(const fem::MotionStep& step) {
   if (scene_.has_heat()) row_.push_back(step.powers.heat);
 }
 
-void MotionColumns::remember(Memory& memory, fem::Workspace& model) {
-  mechanism_.remember(memory);
+void MotionColumns::archive(Archive& memory, fem::Workspace& model) {
+  mechanism_.archive(memory);
   if (scene_.measures.empty()) return;
   memory(first_);
-  if (!memory.puts_back()) return;
+  if (!memory.is_restoring()) return;
   model.prepare(first_);
   measures_.emplace(scene_, model, undeformed_);
 }

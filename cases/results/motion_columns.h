@@ -11,9 +11,10 @@ namespace flexmorph::cases {
 /// frame is that of the hub (the rigid frame with prescribed motion that carries a body) or sleeve;
 /// for a body between two pins it is the line through the pins, otherwise the root edge.
 struct DeflectingPoint {
-  const Observe* point = nullptr;       ///< The observed point.
-  const fem::Growth* growth = nullptr;  ///< Moving root in the hub or sleeve; null: `line` is used.
-  std::array<Vec2, 2> line{};           ///< Two material points that define the frame [m].
+  const Observe* point = nullptr;  ///< The observed point.
+  const fem::MovingRoot* growth =
+      nullptr;                 ///< Moving root in the hub or sleeve; null: `line` is used.
+  std::array<Vec2, 2> line{};  ///< Two material points that define the frame [m].
 };
 /// Returns the displacement of the point across the undeformed body, in the frame of the point [m].
 double deflection_across(const fem::Model& model, const DeflectingPoint& at, const fem::State& x);
@@ -22,9 +23,9 @@ double deflection_across(const fem::Model& model, const DeflectingPoint& at, con
 class MotionColumns {
  public:
   /// Creates the columns of a scene; the scene and the moving roots have to outlive them.
-  /// @param growths  moving roots of the model
+  /// @param moving_roots  moving roots of the model
   /// @param balance  true if the motion computes its energy balance, which adds columns
-  MotionColumns(const Scene& scene, std::span<const fem::Growth> growths, bool balance);
+  MotionColumns(const Scene& scene, std::span<const fem::MovingRoot> moving_roots, bool balance);
 
   /// Describes the values of a row, in their order.
   const std::vector<ColumnInfo>& columns() const { return columns_; }
@@ -35,22 +36,22 @@ class MotionColumns {
   std::span<const double> row(const fem::MotionStep& step);
   /// Saves or restores the data on which rows depend besides their step.
   /// @param model  model of the motion; restoring prepares it for the first step
-  void remember(Memory& memory, fem::Workspace& model);
+  void archive(Archive& memory, fem::Workspace& model);
 
  private:
   void describe(const std::string& name, const char* unit, std::string meaning, ColumnGroup group);
-  void describe_bodies(std::span<const fem::Growth> growths);
-  void describe_deflecting_points(std::span<const fem::Growth> growths);
+  void describe_bodies(std::span<const fem::MovingRoot> moving_roots);
+  void describe_deflecting_points(std::span<const fem::MovingRoot> moving_roots);
   void describe_energies();
   void append_bodies(const fem::MotionStep& step);
   void append_energies(const fem::MotionStep& step);
 
   const Scene& scene_;
   bool balance_;
-  std::vector<const fem::Growth*> deflecting_;    // bodies with a tip deflection
-  std::vector<DeflectingPoint> points_;           // observed points of designed bodies
-  std::vector<const Body*> flowing_;              // bodies with a column for their length
-  std::vector<double fem::MotionStep::*> terms_;  // energies in the columns of terms
+  std::vector<const fem::MovingRoot*> deflecting_;  // bodies with a tip deflection
+  std::vector<DeflectingPoint> points_;             // observed points of designed bodies
+  std::vector<const Body*> flowing_;                // bodies with a column for their length
+  std::vector<double fem::MotionStep::*> terms_;    // energies in the columns of terms
   MechanismColumns mechanism_;
   std::vector<ColumnInfo> columns_;
   std::vector<double> row_;
@@ -68,6 +69,6 @@ std::vector<ColumnInfo> path_columns(const Scene& scene);
 
 /// Returns the tip deflection of a body with a moving root: the coordinate of the middle of its
 /// free end across the axis of the hub [m].
-double tip_deflection(const fem::Model& model, const fem::Growth& growth, const fem::State& x);
+double tip_deflection(const fem::Model& model, const fem::MovingRoot& growth, const fem::State& x);
 
 }  // namespace flexmorph::cases

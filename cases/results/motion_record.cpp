@@ -7,8 +7,8 @@ namespace flexmorph {
 
 namespace io {
 
-void remember(Memory& memory, PlanePlate& p) { memory(p.n_across, p.points, p.density); }
-void remember(Memory& memory, PlaneFrame& f) { memory(f.title, f.plates, f.outlines); }
+void archive(Archive& memory, PlanePlate& p) { memory(p.n_across, p.points, p.density); }
+void archive(Archive& memory, PlaneFrame& f) { memory(f.title, f.plates, f.outlines); }
 
 }  // namespace io
 

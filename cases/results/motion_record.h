@@ -3,7 +3,7 @@
 #include "cases/results/series.h"
 #include "fem/dynamics/motion.h"
 #include "fem/solve/statics.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 #include "io/plane_frames.h"
 
 /// Results of a motion or of a path of equilibria.
@@ -11,7 +11,7 @@ namespace flexmorph {
 
 namespace io {
 /// Saves or restores a picture of a mechanism.
-void remember(Memory& memory, PlaneFrame& frame);
+void archive(Archive& memory, PlaneFrame& frame);
 }  // namespace io
 
 namespace cases {
@@ -20,7 +20,7 @@ namespace cases {
 inline constexpr const char *kTimeColumn = "time", *kKineticColumn = "energy.kinetic",
                             *kStrainColumn = "energy.strain",
                             *kPotentialColumn = "energy.potential",
-                            *kDefectColumn = "energy.defect", *kFactorColumn = "load_factor";
+                            *kEnergyErrorColumn = "energy.error", *kFactorColumn = "load_factor";
 /// Ending of the names of columns with tip deflections.
 inline const std::string kDeflectionEnding = ".tip_deflection";
 /// Ending of the names of columns with deflections of observed points.

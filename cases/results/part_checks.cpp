@@ -16,7 +16,7 @@ using Ring = std::vector<Vec2>;
 
 constexpr double kMissing = 0.01;  ///< Fraction of a solid region that may be missing [-].
 
-std::string point_words(const Vec2& p) {
+std::string point_text(const Vec2& p) {
   return "(" + io::to_text(p.x(), 4) + ", " + io::to_text(p.y(), 4) + ")";
 }
 
@@ -32,14 +32,16 @@ double allowed_within(const mmc::BodyProblem& problem, const Ring& ring) {
   return area(unite({&ring, 1}, mmc::domain_of(problem), problem.empty));
 }
 
+/// Adds the solid regions that lack material. All add_...() functions add the location only; the
+/// caller completes the sentence.
 void add_solid(const mmc::BodyProblem& problem, std::vector<std::string>& out) {
   for (const Ring& ring : problem.solid) {
     const double allowed = allowed_within(problem, ring);
     const double missing = allowed > 0 ? 1 - area_within(problem, ring) / allowed : 0;
     if (missing <= kMissing) continue;
     const Box box = bounds_of(ring);
-    out.push_back(io::to_text(100 * missing, 3) + " % of the solid region from " +
-                  point_words(box.lower) + " to " + point_words(box.upper) + " m has no material");
+    out.push_back("in " + io::to_text(100 * missing, 3) + " % of the solid region from " +
+                  point_text(box.lower) + " to " + point_text(box.upper) + " m");
   }
 }
 
@@ -59,19 +61,19 @@ double length_on(const mmc::BodyProblem& problem, const Segment& line) {
 void add_held(const mmc::BodyProblem& problem, std::vector<std::string>& out) {
   for (const Segment& line : problem.held)
     if (length_on(problem, line) <= 1e-6 * (line.b - line.a).norm())
-      out.push_back("no material reaches the line from " + point_words(line.a) + " to " +
-                    point_words(line.b) + " m, which is held");
+      out.push_back("on the supported line from " + point_text(line.a) + " to " +
+                    point_text(line.b) + " m");
 }
 
-/// Adds messages on supports and loads whose cells contain no material of the part.
-void add_places(const mmc::BodyProblem& problem, std::vector<std::string>& out) {
+/// Adds the supports and loads whose cells contain no material of the part.
+void add_locations(const mmc::BodyProblem& problem, std::vector<std::string>& out) {
   const VectorXd fractions = mmc::part_fractions(problem, {});
   const std::vector<HeldOrLoaded> ends =
-      problem.places.empty() ? ends_of(problem.grid) : problem.places;
-  for (const HeldOrLoaded& place : ends)
-    if (std::none_of(place.cells.begin(), place.cells.end(),
+      problem.locations.empty() ? ends_of(problem.grid) : problem.locations;
+  for (const HeldOrLoaded& location : ends)
+    if (std::none_of(location.cells.begin(), location.cells.end(),
                      [&](int cell) { return fractions[cell] > 0; }))
-      out.push_back("no material is at " + place.name);
+      out.push_back("at " + location.name);
 }
 
 /// Returns the points of a moving body at which joints, masses or loads act, with their names.
@@ -88,7 +90,7 @@ std::vector<std::pair<std::string, Vec2>> attached_points(const Scene& scene,
   return out;
 }
 
-/// Adds messages on points that have no material in the cells around them, although material is
+/// Adds the points that have no material in the cells around them, although material is
 /// allowed there.
 void add_points(const Scene& scene, const mmc::BodyProblem& problem,
                 std::vector<std::string>& out) {
@@ -97,7 +99,7 @@ void add_points(const Scene& scene, const mmc::BodyProblem& problem,
     const Vec2 half(reach, reach);
     const Ring square = corners_of({at - half, at + half});
     if (allowed_within(problem, square) > 0 && !(area_within(problem, square) > 0))
-      out.push_back("no material is at " + name + " at " + point_words(at) + " m");
+      out.push_back("at " + name + " at " + point_text(at) + " m");
   }
 }
 
@@ -108,9 +110,10 @@ std::vector<std::string> missing_material(const Scene& scene, const mmc::BodyPro
   if (!problem.part) return out;
   add_solid(problem, out);
   add_held(problem, out);
-  add_places(problem, out);
+  add_locations(problem, out);
   add_points(scene, problem, out);
-  for (std::string& words : out) words = "body '" + problem.body + "', its part: " + words;
+  for (std::string& words : out)
+    words = "The part of body '" + problem.body + "' has no material " + words + ".";
   return out;
 }
 
@@ -118,14 +121,15 @@ std::vector<std::string> motion_notes(const Scene& scene) {
   if (std::none_of(scene.designs.begin(), scene.designs.end(),
                    [](const BodyDesign& d) { return d.part; }))
     return {};
-  if (scene.domain) return {"a plate at rest has no motion: its numbers are static"};
-  if (scene.judges_on_cells()) return {};
+  if (scene.domain) return {"A static plate has no motion. All its results are static"};
+  if (scene.verifies_on_cells()) return {};
   const std::string instead =
-      "stress and deflection are static, under the loads of the motion on the elements of the case";
-  if (scene.has_heat()) return {"heat has no motion on cells: " + instead};
-  if (scene.in_space()) return {"space has no motion on cells: " + instead};
-  return {"the case has no motion on cells" +
-          (scene.verify ? ", but one on " + scene.verify->words() : std::string()) + ": " +
+      ". Stress and deflection are static results under the loads of the motion on the mesh of the "
+      "case";
+  if (scene.has_heat()) return {"A case with heat has no motion on the design mesh" + instead};
+  if (scene.in_space()) return {"A case in space has no motion on the design mesh" + instead};
+  return {"The case has no motion on the design mesh" +
+          (scene.verify ? ", because [verify] uses " + scene.verify->words() : std::string()) +
           instead};
 }
 

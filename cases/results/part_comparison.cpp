@@ -41,7 +41,7 @@ Number of_outline(const BodyView& v, const Get& get) {
 }
 
 double allowed(const BodyView& v) {
-  return mmc::allowed_volume(v.problem().goal).value_or(v.outcome().sharp.volume);
+  return mmc::allowed_volume(v.problem().goal).value_or(v.outcome().crisp.volume);
 }
 
 Number mass(const BodyView& v, double volume) {
@@ -50,13 +50,13 @@ Number mass(const BodyView& v, double volume) {
 }
 
 constexpr Row kRows[] = {
-    {"mass", "kg", "mass", [](const BodyView& v) { return mass(v, v.outcome().sharp.volume); },
+    {"mass", "kg", "mass", [](const BodyView& v) { return mass(v, v.outcome().crisp.volume); },
      [](const BodyView& v) { return mass(v, allowed(v)); }},
-    {"sharp_volume", "-", "volume fraction",
-     [](const BodyView& v) { return finite(v.outcome().sharp.volume); },
+    {"crisp_volume", "-", "volume fraction",
+     [](const BodyView& v) { return finite(v.outcome().crisp.volume); },
      [](const BodyView& v) { return finite(allowed(v)); }},
-    {"sharp_compliance", "J", "compliance of its cells",
-     [](const BodyView& v) { return finite(v.outcome().sharp.compliance); },
+    {"crisp_compliance", "J", "compliance on the design mesh",
+     [](const BodyView& v) { return finite(v.outcome().crisp.compliance); },
      [](const BodyView& v) { return finite(v.outcome().uniform_compliance); }},
     {"body_fitted.compliance", "J", "body-fitted compliance",
      [](const BodyView& v) { return of_outline(v, [](const auto& o) { return o.compliance; }); }},
@@ -64,23 +64,23 @@ constexpr Row kRows[] = {
      [](const BodyView& v) {
        return of_outline(v, [](const auto& o) { return o.largest_stress; });
      }},
-    {"body_fitted.largest_displacement", "m", "largest body-fitted displacement of all loads",
+    {"body_fitted.largest_displacement", "m", "largest body-fitted displacement under all loads",
      [](const BodyView& v) -> Number {
        if (!v.outline() || v.outline()->largest_displacements.empty()) return {};
        return finite(std::ranges::max(v.outline()->largest_displacements));
      }},
     {"min_feature", "m", "smallest width of material",
      [](const BodyView& v) -> Number {
-       const auto& features = v.outcome().sharp.features;
+       const auto& features = v.outcome().crisp.features;
        return features ? finite(features->solid) : std::nullopt;
      }},
     {"min_gap", "m", "smallest width of a gap",
      [](const BodyView& v) -> Number {
-       const auto& features = v.outcome().sharp.features;
+       const auto& features = v.outcome().crisp.features;
        return features ? finite(features->gap) : std::nullopt;
      }},
-    {"pieces", "-", "pieces of material",
-     [](const BodyView& v) -> Number { return 1.0 + v.outcome().sharp.connectivity.islands; }}};
+    {"pieces", "-", "connected regions of material",
+     [](const BodyView& v) -> Number { return 1.0 + v.outcome().crisp.connectivity.islands; }}};
 
 /// Returns the statistics of a column of a motion; nothing if there is no such motion or column.
 std::optional<Variation> variation(const std::optional<MotionRecord>& motion,
@@ -112,14 +112,15 @@ void add_deflections(const Deflection& of_point, const RunResult& parts, const R
                    of(uniform)});
   };
   add(".largest", "largest deflection of " + point, &Variation::largest);
-  add(".rms", "deflection of " + point + ", root mean square about its mean", &Variation::rms);
+  add(".rms", "root mean square of the deflection of " + point + " about its mean",
+      &Variation::rms);
 }
 
 /// Adds the deflections of the tip and of the observed points of a body.
 void add_motion(const std::string& body, const RunResult& parts, const RunResult* design,
                 std::vector<ComparedNumber>& out) {
   if (!parts.motions.assessed()) return;
-  add_deflections({body, body + kDeflectionEnding, "its tip"}, parts, design, out);
+  add_deflections({body, body + kDeflectionEnding, "the tip"}, parts, design, out);
   const Series& table = parts.motions.assessed()->table;
   for (const size_t c : table.of_group(ColumnGroup::across)) {
     const std::string& column = table.columns[c].name;
@@ -158,7 +159,8 @@ std::vector<ComparedNumber> compared_numbers(const Scene& scene, const RunResult
     add_motion(part.outcome().body, parts, design, out);
   }
   if (!scene.domain && parts.motions.assessed())
-    out.push_back({"", "strain_energy_integral", "J s", "strain energy of the motion over time",
+    out.push_back({"", "strain_energy_integral", "J s",
+                   "time integral of the strain energy of the motion",
                    strain_integral(parts.motions.assessed()),
                    design ? strain_integral(design->motions.assessed()) : std::nullopt,
                    strain_integral(parts.motions.assessed_uniform())});
@@ -167,7 +169,7 @@ std::vector<ComparedNumber> compared_numbers(const Scene& scene, const RunResult
 
 std::vector<std::vector<std::string>> comparison_rows(const PartComparison& comparison) {
   std::vector<std::vector<std::string>> out = {
-      {"body", "number", "part", "design", "part - design", "uniform", "part - uniform"}};
+      {"body", "quantity", "part", "design", "part vs. design", "uniform", "part vs. uniform"}};
   const auto text = [](const Number& n) { return n ? io::to_text(*n, 5) : std::string(); };
   for (const ComparedNumber& n : comparison.numbers)
     out.push_back({n.body, n.words + " [" + n.unit + "]", text(n.part), text(n.design),

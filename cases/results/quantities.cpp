@@ -6,8 +6,8 @@
 namespace flexmorph::cases {
 namespace {
 
-const std::vector<std::string> kFigures = {"compliance", "volume", "sharp_compliance",
-                                           "sharp_volume", "uniform_compliance"};
+const std::vector<std::string> kFigures = {"compliance", "volume", "crisp_compliance",
+                                           "crisp_volume", "uniform_compliance"};
 
 /// Returns the names of the columns that can be quantities of interest. Abscissas, numbers of the
 /// solver, lengths and powers are left out.
@@ -37,7 +37,7 @@ std::vector<std::string> candidates(const PreparedCase& prepared, Part part) {
   if (part == Part::motion)
     return names_of(scene.statics
                         ? path_columns(scene)
-                        : MotionColumns(scene, prepared.mechanism().growths, true).columns());
+                        : MotionColumns(scene, prepared.mechanism().moving_roots, true).columns());
   for (const BodyDesign& design : scene.designs)
     for (const std::string& figure : kFigures)
       out.push_back(scene.designs.size() > 1 ? design.body + "." + figure : figure);

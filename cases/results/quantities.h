@@ -19,7 +19,7 @@ std::string to_string(Part part);
 std::vector<Part> parts_of(const Scene& scene);
 
 /// Returns the names of the quantities of a scene in a subproblem: columns of motion.csv or
-/// path.csv, or results of designs. Numbers of run.json ("motion.energy_defect") are not listed.
+/// path.csv, or results of designs. Numbers of run.json ("motion.energy_error") are not listed.
 std::vector<std::string> candidates(const PreparedCase& prepared, Part part);
 
 /// Returns the names of all quantities of a scene as a list for messages, separated by commas.

@@ -19,13 +19,13 @@ using Json = nlohmann::ordered_json;
 
 /// Adds the numbers of a table that exist for the source.
 template <class Source>
-void add(Json& out, std::span<const Quantity<Source>> table, const Source& source) {
-  for (const Quantity<Source>& q : table)
+void add(Json& out, std::span<const ResultQuantity<Source>> table, const Source& source) {
+  for (const ResultQuantity<Source>& q : table)
     if (const Value value = q.value(source); !std::holds_alternative<std::monostate>(value))
       out[q.name] = json_of(value);
 }
 template <class Source>
-Json object_of(std::span<const Quantity<Source>> table, const Source& source) {
+Json object_of(std::span<const ResultQuantity<Source>> table, const Source& source) {
   Json out = Json::object();
   add(out, table, source);
   return out;
@@ -44,12 +44,13 @@ double thinnest(const mmc::BodyProblem& problem) {
 
 /// Returns the meaning of the column `scaled_objective` of history.csv, which is the objective in
 /// the form that is passed to optimizers.
-std::string objective_words(const mmc::BodyProblem& p) {
+std::string objective_text(const mmc::BodyProblem& p) {
   const mmc::ResponseRow& row = *p.goal.objective;
   const std::string of = std::string(row.words).append(" [").append(row.unit).append("]");
   if (p.shares_mass)
     return "natural logarithm of the " + of + ", summed over bodies that share mass";
-  return row.full ? of + ", divided by that of the full plate" : "natural logarithm of the " + of;
+  return row.full ? of + " divided by its value for the full plate"
+                  : "natural logarithm of the " + of;
 }
 
 Json outline_results(const VerifiedOutline& outline, double crisp_compliance) {
@@ -89,10 +90,10 @@ Json body_results(const RunResult& result, size_t i) {
   add(out, design_quantities(), o);
   for (const auto& [name, value] : o.further) {
     out[name] = value;
-    out["sharp_" + name] = o.sharp.further.at(name);
+    out["crisp_" + name] = o.crisp.further.at(name);
   }
   if (i < design.outlines.size())
-    out["body_fitted"] = outline_results(design.outlines[i], o.sharp.compliance);
+    out["body_fitted"] = outline_results(design.outlines[i], o.crisp.compliance);
   if (o.length_scale) out["length_scale"] = object_of(length_scale_quantities(), o);
   if (!o.of_part) out["thinnest_component"] = thinnest(design.problems[i]);
   add_amplitudes(out, result.motions, o.body);
@@ -104,7 +105,7 @@ Json body_results(const RunResult& result, size_t i) {
     out["load_cases"].push_back(object_of(static_load_quantities(), load));
   for (const mmc::LoadDifference& d : design.load_differences)
     if (d.body == o.body) out["load_difference"] = object_of(load_difference_quantities(), d);
-  if (!o.of_part) out["scaled_objective"] = objective_words(design.problems[i]);
+  if (!o.of_part) out["scaled_objective"] = objective_text(design.problems[i]);
   out["cycles"] = design.cycles;
   Json active = Json::array();  // numbers (from 1) of loads within 1 % of the largest compliance
   for (size_t l = 0; l < o.load_compliances.size(); ++l)
@@ -179,8 +180,8 @@ Json motion_results(const Scene& scene, const RunResult& result) {
   const MotionRecord& motion = *motions.motion;
   Json out = Json::object();
   if (!result.design.outcomes.empty()) {
-    out["judged_on"] =
-        scene.verify && motions.verified ? scene.verify->words() : "the scene's mesh";
+    out["verified_on"] =
+        scene.verify && motions.verified ? scene.verify->words() : "the mesh of the case";
     out["strain_energy_integral"] = motions.assessed()->strain_integral();
     if (motions.assessed_uniform())
       out["uniform_strain_energy_integral"] = motions.assessed_uniform()->strain_integral();
@@ -216,7 +217,7 @@ Json cycle_results(const mmc::CycleVerdict& v) {
   for (const mmc::BodyVerdict& b : v.bodies)
     bodies.push_back({{"body", b.body},
                       {"compliance", b.compliance},
-                      {"sharp_compliance", b.sharp_compliance},
+                      {"crisp_compliance", b.crisp_compliance},
                       {"design_change", b.design_change}});
   out["bodies"] = std::move(bodies);
   return out;
@@ -228,7 +229,7 @@ Json heat_results(const Scene& scene) {
     if (!body.heat) continue;
     Json hot = Json::object();
     hot["body"] = body.name;
-    hot["temperature"] = temperature_words(*body.heat);
+    hot["temperature"] = temperature_text(*body.heat);
     hot["expansion"] = body.heat->expansion;
     hot["thermal_volume"] = volume_name(body.heat->volume);
     hot["force"] = body.heat->force;
@@ -311,8 +312,8 @@ void add_designs(Json& out, const Scene& scene, const RunResult& result) {
   for (const mmc::CorrectedCycle& c : design.corrections)
     out["corrected_cycles"].push_back(object_of(corrected_cycle_quantities(), c));
   if (design.corrected)
-    out["corrected"] = {{"sharp_before", design.corrected->before},
-                        {"sharp_after", design.corrected->after},
+    out["corrected"] = {{"crisp_before", design.corrected->before},
+                        {"crisp_after", design.corrected->after},
                         {"kept", design.corrected->improves()}};
   if (design.certificate)
     out["certificate"] = object_of(certificate_quantities(), *design.certificate);
@@ -339,7 +340,7 @@ Json comparison_results(const PartComparison& comparison) {
 
 }  // namespace
 
-std::string certificate_json(const mmc::MotionCertificate& certificate) {
+std::string certificate_json(const mmc::OptimalityCertificate& certificate) {
   return object_of(certificate_quantities(), certificate).dump();
 }
 

@@ -65,8 +65,9 @@ struct DesignResult {
   /// Corrected cycles; the first entry is the design before the corrections.
   std::vector<mmc::CorrectedCycle> corrections;
 
-  std::optional<CorrectedMotion> corrected;           ///< Objective before and after correction.
-  std::optional<mmc::MotionCertificate> certificate;  ///< Optimality certificate of the designs.
+  std::optional<CorrectedMotion> corrected;  ///< Objective before and after correction.
+  std::optional<mmc::OptimalityCertificate>
+      certificate;  ///< Optimality certificate of the designs.
 
   /// Differences between the loads of the designs and the loads of the motion with the designs.
   std::vector<mmc::LoadDifference> load_differences;
@@ -75,7 +76,7 @@ struct DesignResult {
 
   /// CPU times [s] of the post-processing of designs; of the motions that supply loads; of the
   /// motions with final designs and with uniform material.
-  double seconds_idle = 0, seconds_motion = 0, seconds_verification = 0;
+  double seconds_unloaded = 0, seconds_motion = 0, seconds_verification = 0;
 };
 
 /// The motions of a run: the motion with the design (or with full material), the motion with

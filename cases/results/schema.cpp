@@ -12,143 +12,150 @@ Value optional_number(const std::optional<double>& number) {
   return {};
 }
 
-std::span<const Quantity<PointVariation>> point_quantities() {
+std::span<const ResultQuantity<PointVariation>> point_quantities() {
   using T = PointVariation;
-  static const Quantity<T> kTable[] = {
+  static const ResultQuantity<T> kTable[] = {
       {"point", "", "name of the observed point",
        [](const T& t) { return t.name.empty() ? Value() : Value(t.name); }},
-      {"mean", "m", "mean over time of the deflection",
+      {"mean", "m", "mean of the deflection over time",
        [](const T& t) -> Value { return t.designed.mean; }},
-      {"rms", "m", "root mean square about the mean",
+      {"rms", "m", "root mean square of the deflection about its mean",
        [](const T& t) -> Value { return t.designed.rms; }},
-      {"peak_to_peak", "m", "largest less smallest deflection",
+      {"peak_to_peak", "m", "largest deflection minus smallest deflection",
        [](const T& t) -> Value { return t.designed.peak_to_peak; }},
-      {"largest", "m", "largest size of the deflection",
+      {"largest", "m", "largest absolute deflection",
        [](const T& t) -> Value { return t.designed.largest; }},
-      {"mean_ratio", "-", "mean over that of uniform material",
+      {"mean_ratio", "-", "`mean` divided by `mean` of uniform material",
        [](const T& t) -> Value { return t.designed.mean / t.uniform.mean; }},
-      {"rms_ratio", "-", "rms over that of uniform material",
+      {"rms_ratio", "-", "`rms` divided by `rms` of uniform material",
        [](const T& t) -> Value { return t.rms_ratio(); }},
-      {"peak_to_peak_ratio", "-", "peak_to_peak over that of uniform material",
+      {"peak_to_peak_ratio", "-", "`peak_to_peak` divided by `peak_to_peak` of uniform material",
        [](const T& t) -> Value { return t.peak_to_peak_ratio(); }},
-      {"largest_ratio", "-", "largest over that of uniform material",
+      {"largest_ratio", "-", "`largest` divided by `largest` of uniform material",
        [](const T& t) -> Value { return t.designed.largest / t.uniform.largest; }}};
   return kTable;
 }
 
-std::span<const Quantity<fem::MotionResult>> motion_quantities() {
+std::span<const ResultQuantity<fem::MotionResult>> motion_quantities() {
   using R = fem::MotionResult;
-  static const Quantity<R> kTable[] = {
-      {"steps", "-", "accepted time steps", [](const R& r) -> Value { return r.counts.steps; }},
-      {"newton_iterations", "-", "iterations of Newton's method",
+  static const ResultQuantity<R> kTable[] = {
+      {"steps", "-", "number of accepted time steps",
+       [](const R& r) -> Value { return r.counts.steps; }},
+      {"newton_iterations", "-", "number of iterations of Newton's method",
        [](const R& r) -> Value { return r.counts.newton; }},
-      {"factorizations", "-", "factorizations of the system matrix",
+      {"factorizations", "-", "number of factorizations of the system matrix",
        [](const R& r) -> Value { return r.counts.factorizations; }},
-      {"rejected_steps", "-", "steps that were repeated",
+      {"rejected_steps", "-", "number of rejected steps, which were repeated",
        [](const R& r) -> Value { return r.counts.rejected; }},
-      {"evaluations", "-", "evaluations of accelerations, of the explicit integrator",
+      {"evaluations", "-", "number of evaluations of the accelerations by the explicit integrator",
        [](const R& r) { return r.counts.evaluations > 0 ? Value(r.counts.evaluations) : Value(); }},
-      {"partitions", "-", "choices of independent coordinates, of the explicit integrator",
+      {"partitions", "-",
+       "number of selections of independent coordinates by the explicit integrator",
        [](const R& r) { return r.counts.evaluations > 0 ? Value(r.counts.partitions) : Value(); }},
-      {"largest_step", "s", "largest accepted step",
+      {"largest_step", "s", "largest accepted time step",
        [](const R& r) -> Value { return r.largest_step; }},
-      {"energy_defect", "-", "largest defect of the energy balance, relative to the largest energy",
-       [](const R& r) -> Value { return r.energy_defect; }},
+      {"energy_error", "-", "largest error of the energy balance, relative to the largest energy",
+       [](const R& r) -> Value { return r.energy_error; }},
       {"constraint_drift", "m", "largest violation of a constraint",
        [](const R& r) -> Value { return r.constraint_drift; }},
       {"velocity_drift", "m/s", "largest violation of the rate of a constraint",
        [](const R& r) -> Value { return r.velocity_drift; }},
       {"smallest_area_ratio", "-", "smallest ratio of deformed to undeformed area",
        [](const R& r) -> Value { return r.smallest_area_ratio; }},
-      {"condition", "-", "estimated condition of the last matrix (--condition)",
+      {"condition", "-", "estimated condition number of the last matrix (--condition)",
        [](const R& r) { return optional_number(r.condition); }}};
   return kTable;
 }
 
-std::span<const Quantity<PathRecord>> path_quantities() {
+std::span<const ResultQuantity<PathRecord>> path_quantities() {
   using P = PathRecord;
-  static const Quantity<P> kTable[] = {
-      {"equilibria", "-", "equilibria of the path",
+  static const ResultQuantity<P> kTable[] = {
+      {"equilibria", "-", "number of equilibria of the path",
        [](const P& p) -> Value { return static_cast<int>(p.table.n_rows()); }},
       {"load_factor", "-", "load factor of the last equilibrium",
        [](const P& p) -> Value { return p.table.at(kFactorColumn).back(); }},
       {"strain_energy", "J", "strain energy of the last equilibrium",
        [](const P& p) -> Value { return p.table.at(kStrainColumn).back(); }},
-      {"completed", "", "whether the path reached its end",
+      {"completed", "", "true if the path reached its end",
        [](const P& p) -> Value { return p.result.completed; }},
-      {"rejected_steps", "-", "steps that were repeated",
+      {"rejected_steps", "-", "number of rejected steps, which were repeated",
        [](const P& p) -> Value { return p.result.rejected; }},
-      {"newton_iterations", "-", "iterations of Newton's method",
+      {"newton_iterations", "-", "number of iterations of Newton's method",
        [](const P& p) -> Value { return p.result.iterations; }},
-      {"condition", "-", "estimated condition of the last matrix (--condition)",
+      {"condition", "-", "estimated condition number of the last matrix (--condition)",
        [](const P& p) { return optional_number(p.result.condition); }}};
   return kTable;
 }
 
-std::span<const Quantity<mmc::CycleVerdict>> cycle_quantities() {
+std::span<const ResultQuantity<mmc::CycleVerdict>> cycle_quantities() {
   using V = mmc::CycleVerdict;
-  static const Quantity<V> kTable[] = {
+  static const ResultQuantity<V> kTable[] = {
       {"cycle", "-", "number of the cycle, from 1", [](const V& v) -> Value { return v.cycle; }},
       {"objective", "J", "sum of the compliances of the bodies",
        [](const V& v) -> Value { return v.objective; }},
-      {"measure", "J s or m", "what cycles are compared by (cycle.compare_by)",
+      {"measure", "J s or m", "quantity by which the cycles are compared (cycle.compare_by)",
        [](const V& v) -> Value { return v.measure; }},
       {"violation", "-",
-       "largest part by which a crisp design is beyond its limits; null: loose loads",
+       "largest relative violation of a limit by a crisp design; null: a load has no support",
        [](const V& v) { return std::isfinite(v.violation) ? Value(v.violation) : Value(nullptr); }},
-      {"best", "", "whether this cycle is the best so far",
+      {"best", "", "true if this cycle is the best one so far",
        [](const V& v) -> Value { return v.best; }}};
   return kTable;
 }
 
-std::span<const Quantity<mmc::CorrectedCycle>> corrected_cycle_quantities() {
+std::span<const ResultQuantity<mmc::CorrectedCycle>> corrected_cycle_quantities() {
   using C = mmc::CorrectedCycle;
-  static const Quantity<C> kTable[] = {
-      {"cycle", "-", "number of the cycle; 0 is the design before",
+  static const ResultQuantity<C> kTable[] = {
+      {"cycle", "-", "number of the cycle; 0 is the design before the corrections",
        [](const C& c) -> Value { return c.cycle; }},
       {"objective", "", "objective J of the motion", [](const C& c) -> Value { return c.value; }},
       {"kkt", "-", "KKT residual of log J", [](const C& c) -> Value { return c.kkt; }},
-      {"angle", "rad", "angle between the gradients of J and of the loads' compliance",
+      {"angle", "rad", "angle between the gradients of J and of the compliance under the loads",
        [](const C& c) -> Value { return c.angle; }},
       {"radius", "-", "radius of the trust region", [](const C& c) -> Value { return c.radius; }},
       {"predicted", "-", "predicted relative decrease of J",
        [](const C& c) -> Value { return c.predicted; }},
       {"actual", "-", "actual relative decrease of J",
        [](const C& c) { return std::isfinite(c.actual) ? Value(c.actual) : Value(nullptr); }},
-      {"accepted", "", "whether the design is kept",
+      {"accepted", "", "true if the design was accepted",
        [](const C& c) -> Value { return c.accepted; }},
-      {"motions", "-", "motions with their adjoints so far",
+      {"motions", "-", "number of motions so far, each with its adjoint solution",
        [](const C& c) -> Value { return c.motions; }},
       {"seconds", "s", "CPU time so far", [](const C& c) -> Value { return c.seconds; }}};
   return kTable;
 }
 
-std::span<const Quantity<mmc::MotionCertificate>> certificate_quantities() {
-  using C = mmc::MotionCertificate;
-  static const Quantity<C> kTable[] = {
-      {"objective", "", "what J is", [](const C& c) -> Value { return c.objective; }},
+std::span<const ResultQuantity<mmc::OptimalityCertificate>> certificate_quantities() {
+  using C = mmc::OptimalityCertificate;
+  static const ResultQuantity<C> kTable[] = {
+      {"objective", "", "name of the objective J of the motion",
+       [](const C& c) -> Value { return c.objective; }},
       {"value", "", "J of the regularized design",
        [](const C& c) -> Value { return c.regularized.value; }},
       {"kkt", "-", "KKT residual of log J under the limits of the regularized design",
        [](const C& c) -> Value { return c.regularized.kkt; }},
-      {"angle", "rad", "angle between the gradients of J and of the loads' compliance",
+      {"angle", "rad", "angle between the gradients of J and of the compliance under the loads",
        [](const C& c) -> Value { return c.regularized.angle; }},
-      {"left", "-", "largest relative decrease of J within the move limit, to first order",
+      {"left", "-",
+       "predicted decrease: largest relative decrease of J within the move limit, to first order",
        [](const C& c) -> Value { return c.regularized.left; }},
       {"violation", "-", "largest violation of a limit of the regularized design",
        [](const C& c) -> Value { return c.regularized.violation; }},
-      {"sharp_value", "", "J of the crisp design, which is what the outlines enclose",
+      {"crisp_value", "", "J of the crisp design, which the outlines enclose",
        [](const C& c) -> Value { return c.crisp.value; }},
-      {"sharp_kkt", "-", "`kkt` of the crisp design, by shape derivatives of its outlines",
+      {"crisp_kkt", "-",
+       "`kkt` of the crisp design, computed with shape derivatives of its outlines",
        [](const C& c) -> Value { return c.crisp.kkt; }},
-      {"sharp_angle", "rad", "`angle` of the crisp design",
+      {"crisp_angle", "rad", "`angle` of the crisp design",
        [](const C& c) -> Value { return c.crisp.angle; }},
-      {"sharp_left", "-", "`left` of the crisp design",
+      {"crisp_left", "-", "`left` of the crisp design",
        [](const C& c) -> Value { return c.crisp.left; }},
-      {"sharp_violation", "-", "largest violation of a limit of the crisp design",
+      {"crisp_violation", "-", "largest violation of a limit of the crisp design",
        [](const C& c) -> Value { return c.crisp.violation; }},
-      {"move_limit", "-", "this move limit", [](const C& c) -> Value { return c.move_limit; }},
-      {"seconds", "s", "CPU time", [](const C& c) -> Value { return c.seconds; }}};
+      {"move_limit", "-", "move limit of the predicted decrease",
+       [](const C& c) -> Value { return c.move_limit; }},
+      {"seconds", "s", "CPU time of the certificate",
+       [](const C& c) -> Value { return c.seconds; }}};
   return kTable;
 }
 
@@ -187,11 +194,11 @@ nlohmann::ordered_json json_of(const Value& value) {
 namespace {
 
 template <class Source>
-void append_table(const std::string& title, std::span<const Quantity<Source>> table,
+void append_table(const std::string& title, std::span<const ResultQuantity<Source>> table,
                   std::string& out) {
   out += (out.empty() ? "#### " : "\n#### ") + title + "\n\n| name | unit | meaning |\n";
   out += "| --- | --- | --- |\n";
-  for (const Quantity<Source>& q : table)
+  for (const ResultQuantity<Source>& q : table)
     out += "| `" + std::string(q.name) + "` | " + q.unit + " | " + q.meaning + " |\n";
 }
 
@@ -202,20 +209,21 @@ std::string results_as_markdown() {
   append_table("`results`: an entry per designed body", design_quantities(), out);
   append_table("`results[].length_scale`: widths of the outline", length_scale_quantities(), out);
   append_table("`results[].body_fitted`: verification of the outline", outline_quantities(), out);
-  append_table("`results[].load_cases`, `loads/`: an entry per load case of a plate at rest",
+  append_table("`results[].load_cases`, `loads/`: an entry per load case of a static plate",
                static_load_quantities(), out);
-  append_table("`results[].load_difference`: loads against the motion with the design",
-               load_difference_quantities(), out);
+  append_table(
+      "`results[].load_difference`: difference between the loads and the motion with the design",
+      load_difference_quantities(), out);
   append_table(
       "`results[].tip`, `results[].points`: deflections of the tip and of every observed point in "
       "the motion",
       point_quantities(), out);
-  append_table("`motion`: a motion", motion_quantities(), out);
-  append_table("`static`: a path of equilibria", path_quantities(), out);
+  append_table("`motion`: numbers of the motion", motion_quantities(), out);
+  append_table("`static`: numbers of the path of equilibria", path_quantities(), out);
   append_table("`cycles`: an entry per cycle", cycle_quantities(), out);
   append_table("`corrected_cycles`: an entry per corrected cycle", corrected_cycle_quantities(),
                out);
-  append_table("`certificate`", certificate_quantities(), out);
+  append_table("`certificate`: optimality certificate", certificate_quantities(), out);
   return out;
 }
 

@@ -20,33 +20,33 @@ Value optional_number(const std::optional<double>& number);
 
 /// A named number (or flag, or text) of a component of a result.
 template <class Source>
-struct Quantity {
+struct ResultQuantity {
   const char *name, *unit, *meaning;  ///< Name in run.json, unit, and meaning as text.
   Value (*value)(const Source&);      ///< Returns the value of the number.
 };
 
 /// Returns the numbers of the outcome of a design.
-std::span<const Quantity<mmc::BodyOutcome>> design_quantities();
+std::span<const ResultQuantity<mmc::BodyOutcome>> design_quantities();
 /// Returns the numbers of the outcome of a design whose widths are limited.
-std::span<const Quantity<mmc::BodyOutcome>> length_scale_quantities();
+std::span<const ResultQuantity<mmc::BodyOutcome>> length_scale_quantities();
 /// Returns the numbers of the verification of an outline.
-std::span<const Quantity<VerifiedOutline>> outline_quantities();
+std::span<const ResultQuantity<VerifiedOutline>> outline_quantities();
 /// Returns the numbers of a load case of a static plate.
-std::span<const Quantity<StaticLoad>> static_load_quantities();
+std::span<const ResultQuantity<StaticLoad>> static_load_quantities();
 /// Returns the numbers of the difference between the loads of a design and of its motion.
-std::span<const Quantity<mmc::LoadDifference>> load_difference_quantities();
+std::span<const ResultQuantity<mmc::LoadDifference>> load_difference_quantities();
 /// Returns the numbers of the deflection of a point.
-std::span<const Quantity<PointVariation>> point_quantities();
+std::span<const ResultQuantity<PointVariation>> point_quantities();
 /// Returns the numbers of a motion.
-std::span<const Quantity<fem::MotionResult>> motion_quantities();
+std::span<const ResultQuantity<fem::MotionResult>> motion_quantities();
 /// Returns the numbers of a path of equilibria.
-std::span<const Quantity<PathRecord>> path_quantities();
+std::span<const ResultQuantity<PathRecord>> path_quantities();
 /// Returns the numbers of a design cycle.
-std::span<const Quantity<mmc::CycleVerdict>> cycle_quantities();
+std::span<const ResultQuantity<mmc::CycleVerdict>> cycle_quantities();
 /// Returns the numbers of a corrected cycle.
-std::span<const Quantity<mmc::CorrectedCycle>> corrected_cycle_quantities();
+std::span<const ResultQuantity<mmc::CorrectedCycle>> corrected_cycle_quantities();
 /// Returns the numbers of an optimality certificate.
-std::span<const Quantity<mmc::MotionCertificate>> certificate_quantities();
+std::span<const ResultQuantity<mmc::OptimalityCertificate>> certificate_quantities();
 
 /// Returns a value as text: numbers in full precision, and an empty text if there is no value.
 std::string text_of(const Value& value);

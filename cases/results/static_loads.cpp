@@ -44,7 +44,7 @@ std::vector<StaticLoad> static_loads_of(const Domain& domain, const mmc::BodyPro
       outline && outline->verification && std::isfinite(outline->verification->compliance)
           ? &*outline->verification
           : nullptr;
-  const mmc::CellFactors crisp = mmc::ersatz_of(problem).sharp(outcome.sharp.fractions);
+  const mmc::CellScaleFactors crisp = mmc::ersatz_of(problem).crisp(outcome.crisp.fractions);
   std::vector<StaticLoad> out;
   for (size_t l = 0; l < domain.loads.size(); ++l) {
     StaticLoad& load = out.emplace_back();
@@ -59,7 +59,7 @@ std::vector<StaticLoad> static_loads_of(const Domain& domain, const mmc::BodyPro
       load.largest_stress = verified->largest_stresses[l].value;
     } else {
       load.strain_energy = 0.5 * load.compliance;
-      measure_cells(problem, outcome.sharp.fractions,
+      measure_cells(problem, outcome.crisp.fractions,
                     loads.displacement(crisp.stiffness, crisp.mass, static_cast<int>(l)), load);
     }
   }

@@ -10,7 +10,7 @@
 /// Results of the load cases of a static plate, for its final design.
 namespace flexmorph::cases {
 
-/// The result of one load case: a row of loads/<domain>.csv.
+/// The result of one load case: a row of loads/DOMAIN.csv.
 struct StaticLoad {
   std::string name;                 ///< Name of the load case.
   double weight = 1;                ///< Weight of the load case [-].

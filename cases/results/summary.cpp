@@ -9,14 +9,15 @@ namespace {
 
 /// Returns a message on the mass of all designs, or on their volume fractions if they have no
 /// density.
-std::string mass_words(const DesignResult& design) {
+std::string mass_text(const DesignResult& design) {
   double mass = 0;
   std::string volumes;
   for (const mmc::BodyProblem& problem : design.problems)
     for (const mmc::BodyOutcome& outcome : design.outcomes)
       if (outcome.body == problem.body) {
-        mass += outcome.sharp.volume * mmc::full_mass_of(problem);
-        volumes += (volumes.empty() ? "volume " : " and ") + io::to_text(outcome.sharp.volume, 4);
+        mass += outcome.crisp.volume * mmc::full_mass_of(problem);
+        volumes +=
+            (volumes.empty() ? "volume fraction " : " and ") + io::to_text(outcome.crisp.volume, 4);
       }
   return mass > 0 ? "mass " + io::to_text(mass, 4) + " kg" : volumes;
 }
@@ -24,26 +25,26 @@ std::string mass_words(const DesignResult& design) {
 std::string gain(double designed, double uniform) {
   const double change = 100 * (designed / uniform - 1);
   return io::to_text(std::abs(change), 3) + (change < 0 ? " % below" : " % above") +
-         " uniform material of this mass";
+         " uniform material of equal mass";
 }
 
 /// Returns a message that compares the designs with uniform material, in the motion or under the
 /// loads of a static plate.
-std::string gain_words(const RunResult& result) {
+std::string gain_text(const RunResult& result) {
   const std::optional<MotionRecord>&motion = result.motions.assessed(),
         &uniform = result.motions.assessed_uniform();
   if (motion && uniform)
-    return "strain energy integral of the motion " +
+    return "time integral of the strain energy " +
            gain(motion->strain_integral(), uniform->strain_integral());
   double designed = 0, even = 0;
   for (const mmc::BodyOutcome& outcome : result.design.outcomes) {
-    designed += outcome.sharp.compliance;
+    designed += outcome.crisp.compliance;
     even += outcome.uniform_compliance;
   }
   return even > 0 ? "compliance " + gain(designed, even) : "";
 }
 
-std::string verdict_words(const DesignResult& design) {
+std::string verdict_text(const DesignResult& design) {
   std::string out;
   for (const mmc::BodyOutcome& outcome : design.outcomes)
     out += (out.empty() ? "" : ", ") +
@@ -92,15 +93,15 @@ std::vector<PointVariation> point_variations(const MotionResults& motions,
   return out;
 }
 
-std::string summary_words(const RunResult& result) {
+std::string summary_text(const RunResult& result) {
   std::string out;
   const auto add = [&](const std::string& words) {
     if (!words.empty()) out += words + ", ";
   };
   if (!result.design.outcomes.empty()) {
-    add(mass_words(result.design));
-    add(gain_words(result));
-    add(verdict_words(result.design));
+    add(mass_text(result.design));
+    add(gain_text(result));
+    add(verdict_text(result.design));
   }
   return out + io::to_text(result.info.seconds_wall, 3) + " s";
 }

@@ -24,17 +24,17 @@ struct VerifiedOutline {
 
   /// Violations of the minimum length scale: locations of the outline where a gap is narrower than
   /// `cell` or material narrower than `thickness`, narrowest first.
-  std::vector<NarrowPlace> narrow;
+  std::vector<LengthScaleViolation> narrow;
 };
 
 /// Returns messages on locations where material or a gap is too narrow; none if there are no such
 /// locations.
-std::vector<std::string> narrow_words(const VerifiedOutline& outline);
+std::vector<std::string> narrow_text(const VerifiedOutline& outline);
 
-/// Returns a message on the verification of an outline: "beam: body-fitted compliance 75.1 (error
-/// about 0.3 %) ...; its cells say 74.4, 0.9 % less".
+/// Returns a message on the verification of an outline: "beam: body-fitted compliance 75.1 J
+/// (estimated error 0.3 %), ...; compliance on the design mesh 74.4 J (0.9 % lower); ...".
 /// @param crisp_compliance  compliance of the cells of the crisp design [J]
-std::string outline_words(const VerifiedOutline& outline, double crisp_compliance);
+std::string outline_text(const VerifiedOutline& outline, double crisp_compliance);
 
 /// Returns the von Mises stress at the nodes of the last mesh (n_nodes) [Pa].
 std::vector<double> mises_of(const verification::OutlineVerification& verification);

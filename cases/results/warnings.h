@@ -18,14 +18,14 @@ std::vector<Warning> warnings_of(const Scene& scene, const RunResult& result);
 /// s becomes unstable at rho_inf = 0.99 after 8 s.
 bool damps_no_multipliers(const Scene& scene);
 /// Returns the message that the integrator hardly damps multipliers, with a remedy.
-std::string undamped_words(const Scene& scene);
+std::string undamped_text(const Scene& scene);
 /// Returns a message on the alternating force of a joint: since when, and by which amplitude.
-std::string alternation_words(const fem::Alternation& found);
+std::string alternation_text(const fem::Alternation& found);
 
 /// Tells whether none of the warnings makes the result unusable.
 bool usable(const std::vector<Warning>& warnings);
 /// Returns the status of a complete run: "done" or "done, not usable".
-std::string done_words(const std::vector<Warning>& warnings);
+std::string done_text(const std::vector<Warning>& warnings);
 /// Returns a count for messages, ", 2 warnings"; empty for n = 0.
 /// @param one   noun for n = 1
 /// @param many  noun for n > 1

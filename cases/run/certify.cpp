@@ -21,7 +21,8 @@ Scene finished_scene(const CertifyOptions& options) {
   const Scene first = read_scene(io::CaseFile(kept, options.overrides));
   if (first.designs.empty() || first.domain)
     throw Error::input("'" + options.directory +
-                       "' has no design that moves: there is nothing to certify");
+                       "' has no design of a moving body. An optimality certificate is computed "
+                       "only for designs of moving bodies");
   std::vector<std::string> changes = options.overrides;
   for (std::string& each : changes_to_designs(options.directory, first))
     changes.push_back(std::move(each));
@@ -48,18 +49,18 @@ std::vector<fem::EslSets> loads_of(const RunContext& run,
 int certify_run(const CertifyOptions& options) {
   const PreparedCase prepared(finished_scene(options));
   const Scene& scene = prepared.scene();
-  RunFolder folder(options.directory, scene, false, RunFolder::Begin::go_on);
+  RunFolder folder(options.directory, scene, false, RunFolder::Begin::keep_running);
   Progress progress(options.quiet);
   const RunContext run{prepared, &folder, progress, [] { return true; }};
   const std::vector<mmc::BodyProblem>& problems = prepared.design_problems();
-  const mmc::MotionCertificate certificate =
+  const mmc::OptimalityCertificate certificate =
       certify_by_motion(run, *scene.certify, loads_of(run, problems), problems);
   const std::string path = folder.file("run.json");
   nlohmann::ordered_json results = nlohmann::ordered_json::parse(io::read_text(path));
   results["certificate"] = nlohmann::ordered_json::parse(certificate_json(certificate));
   io::write_file(path, io::json_text(results));
   folder.finish();
-  if (options.quiet) std::printf("%s\n", certificate_words(certificate).c_str());
+  if (options.quiet) std::printf("%s\n", certificate_text(certificate).c_str());
   return 0;
 }
 

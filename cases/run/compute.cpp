@@ -28,12 +28,13 @@ PreparedCase load_case(const std::string& name, std::span<const std::string> cha
 EndedRun compute_as_far_as_possible(const PreparedCase& prepared, const ComputeSettings& settings) {
   const auto begin = std::chrono::steady_clock::now();
   Progress progress(settings.say);
-  const RunContext run{.prepared = prepared,
-                       .folder = nullptr,
-                       .progress = progress,
-                       .go_on = settings.go_on ? settings.go_on : [] { return true; },
-                       .threads = settings.threads,
-                       .iteration = settings.iteration};
+  const RunContext run{
+      .prepared = prepared,
+      .folder = nullptr,
+      .progress = progress,
+      .keep_running = settings.keep_running ? settings.keep_running : [] { return true; },
+      .threads = settings.threads,
+      .iteration = settings.iteration};
   EndedRun out = run_prepared(run);
   if (out.error)
     complete_early(prepared.scene(), progress, out);

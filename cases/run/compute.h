@@ -23,7 +23,7 @@ struct ComputeSettings {
   int threads = 1;  ///< Number of motions that are computed at the same time.
 
   /// Cancellation callback; it is called at every step and iteration, and false stops the run.
-  std::function<bool()> go_on;
+  std::function<bool()> keep_running;
 
   /// Callback that receives the messages which a run prints on the terminal.
   std::function<void(const std::string&)> say;

@@ -25,8 +25,8 @@ class LoadsOfDesigns {
     std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> out;
     for (size_t k = 0; k < problems.size(); ++k) {
       const mmc::BodyProblem& p = problems[k];
-      const mmc::CellFactors factors =
-          mmc::ersatz_of(p).sharp(mmc::part_fractions(p, p.design.components()));
+      const mmc::CellScaleFactors factors =
+          mmc::ersatz_of(p).crisp(mmc::part_fractions(p, p.design.components()));
       out.push_back(std::make_unique<mmc::ComplianceEvaluator>(loads_[k], p.section, p.compliance,
                                                                factors.stiffness, factors.mass));
     }
@@ -42,7 +42,7 @@ class LoadsOfDesigns {
 /// objective of the motion decreases. The arrows begin at the centres of the components, and the
 /// longest arrow has a twentieth of the size of the picture.
 std::string picture_of(const mmc::BodyProblem& problem,
-                       const mmc::MotionCertificate::Body& certified) {
+                       const mmc::OptimalityCertificate::Body& certified) {
   const Grid& g = problem.grid;
   constexpr double kArrow = 0.05;  // length of the longest arrow and of the margin / picture size
   const Vec2 corner(g.x0, g.y0), room = Vec2::Constant(kArrow * std::max(g.width, g.height));
@@ -74,12 +74,12 @@ std::string picture_of(const mmc::BodyProblem& problem,
   return svg.insert(svg.rfind("</g>"), path);
 }
 
-void write_certificate(const Scene& scene, const mmc::MotionCertificate& certificate,
+void write_certificate(const Scene& scene, const mmc::OptimalityCertificate& certificate,
                        const std::vector<mmc::BodyProblem>& problems, RunFolder& folder) {
   static const std::vector<std::string> kColumns = {
       "component", "x", "y", "by_x", "by_y", "by_length", "by_angle", "by_c1", "by_c2", "by_c3"};
   for (size_t b = 0; b < certificate.bodies.size(); ++b) {
-    const mmc::MotionCertificate::Body& body = certificate.bodies[b];
+    const mmc::OptimalityCertificate::Body& body = certificate.bodies[b];
     const std::string stem = "certificate" + (scene.designs.size() > 1 ? "_" + body.body : "");
     io::CsvWriter csv(folder.file(stem + ".csv"), kColumns);
     for (size_t c = 0; c < body.components.size(); ++c) {
@@ -105,7 +105,7 @@ LoadsOfDesigns loads_of(const RunContext& run, const PreparedCase& prepared,
     request.factors.push_back(mmc::dynamic_factors(p, p.design.components()));
   request.loads = true;
   request.balance = false;
-  request.go_on = run.go_on;
+  request.keep_running = run.keep_running;
   request.table = "motion_corrected.csv";
   return LoadsOfDesigns(run_motion(prepared, request, run.folder).loads);
 }
@@ -132,8 +132,8 @@ void take_designs(const std::vector<mmc::BodyProblem>& from, std::vector<mmc::Bo
 
 /// Returns the objective J of the crisp outlines of the designs, on the cells of the case.
 double crisp_value(const RunContext& run, const std::vector<mmc::BodyProblem>& problems) {
-  SceneMotion motion(run.prepared, {0, run.scene().time.step, 0}, run.go_on);
-  return mmc::sharp_objective(problems, motion);
+  SceneMotion motion(run.prepared, {0, run.scene().time.step, 0}, run.keep_running);
+  return mmc::crisp_objective(problems, motion);
 }
 
 /// The corrected cycles of a run.
@@ -155,7 +155,7 @@ class Correcting {
     std::vector<mmc::BodyOutcome> found = outcomes(last);
     design_.corrected = {.before = crisp_value(run_, plain),
                          .after = crisp_value(run_, design_.problems)};
-    run_.progress.say(corrected_words(*design_.corrected));
+    run_.progress.say(corrected_text(*design_.corrected));
     if (!design_.corrected->improves()) {
       design_.problems = plain;
       return;
@@ -169,7 +169,7 @@ class Correcting {
   void correct() {
     const Scene& scene = run_.scene();
     const PreparedCase coarse(with_cells(scene, scene.cycle.cell));
-    SceneMotion motion(coarse, {0, scene.cycle.step, scene.cycle.checkpoints}, run_.go_on);
+    SceneMotion motion(coarse, {0, scene.cycle.step, scene.cycle.checkpoints}, run_.keep_running);
     std::vector<mmc::BodyProblem> problems = coarse.design_problems();
     take_designs(design_.problems, problems);
     std::optional<LoadsOfDesigns> current;
@@ -180,11 +180,11 @@ class Correcting {
     const mmc::SeeCycle see = [&](const mmc::CorrectedCycle& cycle) {
       design_.corrections.push_back(cycle);
       if (run_.folder) run_.folder->write_cycles(design_.verdicts, design_.corrections);
-      run_.progress.say(corrected_words(cycle));
-      return run_.go_on();
+      run_.progress.say(corrected_text(cycle));
+      return run_.keep_running();
     };
     mmc::correct_designs(problems, loads_at, motion, scene.cycle.correction, see);
-    if (!run_.go_on()) throw Interrupted();
+    if (!run_.keep_running()) throw Interrupted();
     take_designs(problems, design_.problems);
   }
 
@@ -195,7 +195,7 @@ class Correcting {
     for (size_t k = 0; k < responses.size(); ++k)
       bodies.push_back({design_.problems[k], *responses[k]});
     std::vector<mmc::BodyOutcome> out = mmc::outcomes_of_corrected(bodies);
-    if (!run_.go_on()) throw Interrupted();
+    if (!run_.keep_running()) throw Interrupted();
     return out;
   }
 
@@ -206,8 +206,9 @@ class Correcting {
     found.evaluations = before.evaluations;
     found.kkt = before.kkt;
     found.verdict = before.verdict;
-    found.stop = before.stop + "; then corrected by " +
-                 std::to_string(design_.corrections.back().motions) + " motions";
+    found.stop = before.stop + "; corrected cycles with " +
+                 std::to_string(design_.corrections.back().motions) +
+                 " motions then changed the design";
     if (found.length_scale) found.length_scale = before.length_scale;
     for (size_t l = 0; l < loads.sets.size(); ++l)
       found.energy_ratios.push_back(0.5 * found.load_compliances[l] / loads.sets[l].strain_energy);
@@ -233,25 +234,26 @@ void correct_by_motion(const RunContext& run, std::vector<fem::EslSets>& loads,
   }
 }
 
-mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& settings,
-                                         std::span<const fem::EslSets> loads,
-                                         std::span<const mmc::BodyProblem> designs) {
+mmc::OptimalityCertificate certify_by_motion(const RunContext& run, const Certify& settings,
+                                             std::span<const fem::EslSets> loads,
+                                             std::span<const mmc::BodyProblem> designs) {
   run.progress.begin("certificate");
-  SceneMotion motion(run.prepared, {settings.cell, settings.step, settings.checkpoints}, run.go_on);
+  SceneMotion motion(run.prepared, {settings.cell, settings.step, settings.checkpoints},
+                     run.keep_running);
   const LoadsOfDesigns kept({loads.begin(), loads.end()});
   // The problems are copied, because a certificate must not change the designs.
   std::vector<mmc::BodyProblem> problems(designs.begin(), designs.end());
   std::vector<std::unique_ptr<mmc::ComplianceEvaluator>> responses = kept.of(problems);
   std::vector<mmc::LoadedBody> bodies;
   for (size_t k = 0; k < problems.size(); ++k) bodies.push_back({problems[k], *responses[k]});
-  mmc::MotionCertificate out;
+  mmc::OptimalityCertificate out;
   try {
     out = mmc::certify(bodies, motion, run.scene().optimizer.move_limit);
   } catch (const StoppedMotion&) {
     throw Interrupted();
   }
   if (run.folder) write_certificate(run.scene(), out, problems, *run.folder);
-  run.progress.say("certificate: " + certificate_words(out));
+  run.progress.say("optimality certificate: " + certificate_text(out));
   return out;
 }
 

@@ -19,9 +19,9 @@ void correct_by_motion(const RunContext& run, std::vector<fem::EslSets>& loads,
 /// Certifies designs under the given loads, and writes certificate.csv (for several bodies
 /// certificate_<body>.csv) and a picture for every body.
 /// @throws Interrupted; as mmc::certify()
-mmc::MotionCertificate certify_by_motion(const RunContext& run, const Certify& settings,
-                                         std::span<const fem::EslSets> loads,
-                                         std::span<const mmc::BodyProblem> designs);
+mmc::OptimalityCertificate certify_by_motion(const RunContext& run, const Certify& settings,
+                                             std::span<const fem::EslSets> loads,
+                                             std::span<const mmc::BodyProblem> designs);
 
 /// Options of the command `certify`.
 struct CertifyOptions {

@@ -21,10 +21,12 @@ class KeptEvaluations {
   }
 
   mmc::Past* past() { return past_ ? &*past_ : nullptr; }
-  /// Returns ", 35 state solves were known"; empty in a run that was not resumed.
+  /// Returns ", 35 state solves were restored from the earlier run"; empty in a run that was not
+  /// resumed.
   std::string words() const {
-    return counted(static_cast<size_t>(log_ ? log_->n_known() : 0), "state solve was known",
-                   "state solves were known");
+    return counted(static_cast<size_t>(log_ ? log_->n_known() : 0),
+                   "state solve was restored from the earlier run",
+                   "state solves were restored from the earlier run");
   }
 
  private:
@@ -35,47 +37,51 @@ class KeptEvaluations {
 namespace {
 
 std::string summary(const mmc::BodyOutcome& o) {
-  return o.body + ": compliance " + io::to_text(o.compliance, 5) + ", sharp " +
-         io::to_text(o.sharp.compliance, 5) + " at volume " + io::to_text(o.sharp.volume, 4) +
-         ", uniform material " + io::to_text(o.uniform_compliance, 5);
+  return o.body + ": compliance " + io::to_text(o.compliance, 5) +
+         " J; crisp geometry: compliance " + io::to_text(o.crisp.compliance, 5) +
+         " J, volume fraction " + io::to_text(o.crisp.volume, 4) +
+         "; uniform material: compliance " + io::to_text(o.uniform_compliance, 5) + " J";
 }
 
-std::string measure_words(const Cycle& cycle, double value) {
+std::string measure_text(const Cycle& cycle, double value) {
   if (cycle.compare_by == CycleMeasure::strain_energy)
-    return "strain energy over time " + io::to_text(value, 5) + " J s";
+    return "the time integral of the strain energy is " + io::to_text(value, 5) + " J s";
   const char* what = cycle.compare_by == CycleMeasure::rms            ? "root mean square"
-                     : cycle.compare_by == CycleMeasure::peak_to_peak ? "peak to peak"
-                                                                      : "mean";
-  return std::string(what) + " deflection of '" + cycle.compare_point + "' " +
+                     : cycle.compare_by == CycleMeasure::peak_to_peak ? "peak-to-peak value"
+                                                                      : "absolute mean value";
+  return std::string("the ") + what + " of the deflection of '" + cycle.compare_point + "' is " +
          io::to_text(value, 5) + " m";
 }
 
-/// Returns "loads of 'plate' and its motion are 31 % apart, geometry (...) 5 %".
-std::string difference_words(const mmc::LoadDifference& d) {
-  return "loads of '" + d.body + "' and its motion are " + io::to_text(100 * d.loads, 2) +
-         " % apart, geometry (large deflections, coarse elements) " +
-         io::to_text(100 * d.geometric, 2) + " %";
+/// Returns two sentences with the two numbers of a load difference, see mmc::LoadDifference.
+std::string difference_text(const mmc::LoadDifference& d) {
+  return "The loads for the design of '" + d.body + "' differ from the loads of its motion by " +
+         io::to_text(100 * d.loads, 2) +
+         " % of the strain energy. The static strain energy differs from the strain energy of the "
+         "motion by " +
+         io::to_text(100 * d.geometric, 2) + " % (large deflections or coarse elements).";
 }
 
-std::string verdict_words(const Cycle& cycle, const mmc::CycleVerdict& v) {
-  return "cycle " + std::to_string(v.cycle) + ": compliance of all bodies " +
-         io::to_text(v.objective, 5) + ", " + measure_words(cycle, v.measure) +
-         (v.violation > 0 ? ", limits are violated" : "") +
-         (v.best ? ", the best so far" : ", no better than before: the last one");
+std::string verdict_text(const Cycle& cycle, const mmc::CycleVerdict& v) {
+  return "cycle " + std::to_string(v.cycle) + ": The sum of the compliances is " +
+         io::to_text(v.objective, 5) + " J, " + measure_text(cycle, v.measure) + "." +
+         (v.violation > 0 ? " The designs violate limits." : "") +
+         (v.best ? " This cycle is the best one so far."
+                 : " This cycle is not better than the earlier cycles and is the last one.");
 }
 
 mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
   const Scene& scene = run.scene();
-  return {scene.output.sharp_every, scene.optimizer, run.condition, kept.past(), run.go_on};
+  return {scene.output.crisp_every, scene.optimizer, run.condition, kept.past(), run.keep_running};
 }
 
 /// Returns an observer that writes every iteration, passes it to the callback, and displays it.
 mmc::IterationObserver iteration_observer(const RunContext& run) {
-  return [&run, most = run.prepared.extent().iterations](const mmc::IterationReport& r) {
+  return [&run, most = run.prepared.resource_estimate().iterations](const mmc::IterationReport& r) {
     if (run.folder) run.folder->add_iteration(r);
     if (run.iteration) run.iteration(r);
     run.progress.iteration(r, most);
-    return run.go_on();
+    return run.keep_running();
   };
 }
 
@@ -133,7 +139,7 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
     design_.cycles = cycle;
     design_.outcomes.assign(outcomes.begin(), outcomes.end());
     for (size_t i = 0; i < outcomes.size(); ++i) {
-      add_idle_seconds(outcomes[i]);
+      add_unloaded_seconds(outcomes[i]);
       if (run_.folder) {
         run_.folder->write_loads(outcomes[i].body, loads.now[i], &outcomes[i]);
         run_.folder->write_design(design_.problems[i], outcomes[i]);
@@ -148,17 +154,17 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
       loads.best = loads.now;  // the next cycle replaces loads.now
       motions.keep_assessed();
     }
-    run_.progress.say(verdict_words(run_.scene().cycle, verdicts.back()));
+    run_.progress.say(verdict_text(run_.scene().cycle, verdicts.back()));
   };
   observer.difference = [this](int cycle, std::span<const mmc::LoadDifference> all) {
     for (const mmc::LoadDifference& d : all)
-      run_.progress.say("cycle " + std::to_string(cycle) + ": " + difference_words(d));
+      run_.progress.say("cycle " + std::to_string(cycle) + ": " + difference_text(d));
   };
   return observer;
 }
 
-void DesignRun::add_idle_seconds(const mmc::BodyOutcome& outcome) {
-  if (outcome.length_scale) design_.seconds_idle += outcome.length_scale->seconds;
+void DesignRun::add_unloaded_seconds(const mmc::BodyOutcome& outcome) {
+  if (outcome.length_scale) design_.seconds_unloaded += outcome.length_scale->seconds;
 }
 
 void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
@@ -170,7 +176,7 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
   const bool analysed = scene.optimizer.max_iterations == 0;
   const mmc::LoopSettings settings{analysed ? 1 : scene.cycle.max_cycles, scene.cycle.tolerance,
                                    scene.cycle.load_difference, settings_of(run_, kept),
-                                   motions.judge()};
+                                   motions.verify()};
   // Results of completed motions are stored even if a cycle fails.
   const auto keep = [&] {
     design_.seconds_motion = motions.seconds();
@@ -180,14 +186,14 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
   try {
     best = mmc::esl_loop(
         design_.problems,
-        [&](std::span<const fem::Factors> factors) { return motions.loads(factors); }, settings,
-        observer);
+        [&](std::span<const fem::ScaleFactors> factors) { return motions.loads(factors); },
+        settings, observer);
   } catch (...) {
     keep();
     throw;
   }
   keep();
-  if (!run_.go_on()) throw Interrupted();
+  if (!run_.keep_running()) throw Interrupted();
   if (design_.verdicts.empty()) return;
   design_.outcomes = best;
   loads = std::move(cycle_loads.best);
@@ -201,13 +207,13 @@ void DesignRun::design_at_rest() {
   mmc::BodyProblem& problem = design_.problems.front();
   const std::unique_ptr<mmc::ComplianceEvaluator> loads = build_static_loads(scene, problem);
   KeptEvaluations kept(run_.folder);
-  bool going = true;
+  bool is_running = true;
   run_.progress.begin("design");
   const mmc::BodyOutcome outcome = mmc::design_body(problem, *loads, 1, settings_of(run_, kept),
-                                                    iteration_observer(run_), going);
+                                                    iteration_observer(run_), is_running);
   design_.cycles = 1;
   design_.outcomes = {outcome};
-  add_idle_seconds(outcome);
+  add_unloaded_seconds(outcome);
   const auto write_loads = [&](const VerifiedOutline* outline) {
     design_.static_loads = static_loads_of(*scene.domain, problem, *loads, outcome, outline);
     if (run_.folder) run_.folder->write_static_loads(*scene.domain, design_.static_loads);
@@ -215,20 +221,20 @@ void DesignRun::design_at_rest() {
   write_loads(nullptr);
   if (run_.folder) run_.folder->write_design(problem, outcome);
   run_.progress.say(summary(outcome) + kept.words());
-  if (!run_.go_on()) throw Interrupted();
+  if (!run_.keep_running()) throw Interrupted();
   verify_outlines({});
   write_loads(&design_.outlines.front());
 }
 
 void DesignRun::verify_outlines(std::span<const fem::EslSets> loads) {
-  run_.progress.begin("judge");
+  run_.progress.begin("verification of outlines");
   for (size_t i = 0; i < design_.outcomes.size(); ++i) {
     VerifiedOutline found =
         verify_outline_of(run_.scene(), design_.problems[i], loads.empty() ? nullptr : &loads[i],
-                          run_.go_on, run_.folder);
-    if (!run_.go_on()) throw Interrupted();  // the verification is incomplete
+                          run_.keep_running, run_.folder);
+    if (!run_.keep_running()) throw Interrupted();  // the verification is incomplete
     design_.outlines.push_back(std::move(found));
-    run_.progress.say(outline_words(design_.outlines.back(), design_.outcomes[i].sharp.compliance));
+    run_.progress.say(outline_text(design_.outlines.back(), design_.outcomes[i].crisp.compliance));
   }
 }
 

@@ -36,7 +36,7 @@ class DesignRun {
   void run_cycles(std::vector<fem::EslSets>& loads);
   mmc::LoopObserver cycle_observer(CycleMotions& motions, const KeptEvaluations& kept,
                                    CycleLoads& loads);
-  void add_idle_seconds(const mmc::BodyOutcome& outcome);
+  void add_unloaded_seconds(const mmc::BodyOutcome& outcome);
   void compare_loads(std::span<const fem::EslSets> own);
   void verify_outlines(std::span<const fem::EslSets> loads);
 

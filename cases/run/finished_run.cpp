@@ -15,11 +15,14 @@ std::string finished_case(const std::string& directory) {
   const std::string kept = absolute + "/case.toml", results = absolute + "/run.json";
   for (const std::string& path : {kept, results})
     if (!fs::is_regular_file(path))
-      throw Error::input("'" + directory + "' is no finished run: it has no " +
+      throw Error::input("'" + directory +
+                         "' is not the folder of a finished run: it does not contain " +
                          fs::path(path).filename().string());
   const nlohmann::json run = nlohmann::json::parse(io::read_text(results));
   if (const std::string status = run.value("status", ""); !status.starts_with("done"))
-    throw Error::input("'" + directory + "' is no finished run: its status is \"" + status + "\"");
+    throw Error::input("'" + directory +
+                       "' is not the folder of a finished run: the status in run.json is \"" +
+                       status + "\"");
   return kept;
 }
 

@@ -7,24 +7,24 @@ namespace flexmorph {
 
 namespace fem {
 
-void remember(Memory& memory, NodalForce& f) { memory(f.node, f.force); }
+void archive(Archive& memory, NodalForce& f) { memory(f.node, f.force); }
 
-void remember(Memory& memory, EslSet& s) {
+void archive(Archive& memory, EslSet& s) {
   memory(s.time, s.weight, s.root_column, s.deformation, s.acceleration, s.forces, s.strain_energy,
          s.thermal_stretch, s.held_stretch, s.held_end_stretch);
 }
 
 /// Saves or restores the load sets. The grid and the pins are not saved, because the case defines
 /// them.
-void remember(Memory& memory, EslSets& loads) { memory(loads.sets); }
+void archive(Archive& memory, EslSets& loads) { memory(loads.sets); }
 
 }  // namespace fem
 
 namespace cases {
 
-LoadCollector::LoadCollector(const Scene& scene, std::span<const fem::Growth> growths,
+LoadCollector::LoadCollector(const Scene& scene, std::span<const fem::MovingRoot> moving_roots,
                              std::vector<fem::EslSets>& loads)
-    : scene_(scene), growths_(growths), loads_(loads) {
+    : scene_(scene), moving_roots_(moving_roots), loads_(loads) {
   for (const BodyDesign& d : scene.designs) {
     fem::EslSets& sets = loads_.emplace_back(fem::EslSets{d.grid, {}});
     if (d.link)
@@ -53,7 +53,7 @@ fem::EslSet LoadCollector::load_of(const StepRecord& step, const BodyDesign& des
                                       masses, forces, gravity);
   } else {
     // The root of the body moves with a hub (a rigid frame with prescribed motion) or a rigid body.
-    const auto growth = std::find_if(growths_.begin(), growths_.end(),
+    const auto growth = std::find_if(moving_roots_.begin(), moving_roots_.end(),
                                      [&](const auto& g) { return g.body == design.body; });
     set = fem::equivalent_static_load(step.model, step.x, *growth, design.grid, masses, forces,
                                       gravity);
@@ -62,7 +62,7 @@ fem::EslSet LoadCollector::load_of(const StepRecord& step, const BodyDesign& des
   return set;
 }
 
-void LoadCollector::remember(Memory& memory) { memory(loads_); }
+void LoadCollector::archive(Archive& memory) { memory(loads_); }
 
 }  // namespace cases
 

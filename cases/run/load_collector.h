@@ -10,18 +10,18 @@ namespace flexmorph::cases {
 class LoadCollector : public StepWriter {
  public:
   /// Creates the collector and one empty entry in `loads` per design.
-  /// @param growths  moving roots of the model
+  /// @param moving_roots  moving roots of the model
   /// @param loads    receives one entry per design; outlives the writer
-  LoadCollector(const Scene& scene, std::span<const fem::Growth> growths,
+  LoadCollector(const Scene& scene, std::span<const fem::MovingRoot> moving_roots,
                 std::vector<fem::EslSets>& loads);
   void add(const StepRecord& step) override;
-  void remember(Memory& memory) override;
+  void archive(Archive& memory) override;
 
  private:
   fem::EslSet load_of(const StepRecord& step, const BodyDesign& design) const;
 
   const Scene& scene_;
-  std::span<const fem::Growth> growths_;
+  std::span<const fem::MovingRoot> moving_roots_;
   std::vector<fem::EslSets>& loads_;
 };
 

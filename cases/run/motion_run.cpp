@@ -18,44 +18,52 @@ namespace {
 /// steps that were shortened.
 class MotionMessages {
  public:
-  MotionMessages(const Scene& scene, const MotionRequest& request, const std::string& start_words,
+  MotionMessages(const Scene& scene, const MotionRequest& request, const std::string& start_text,
                  MotionRecord& record)
-      : scene_(scene), request_(request), start_words_(start_words), record_(record) {}
+      : scene_(scene), request_(request), start_text_(start_text), record_(record) {}
 
   void add(const fem::MotionStep& step) {
     if (record_.table.n_rows() == 0) start(step);
     const fem::MotionResult& found = step.so_far;
-    if (found.alternation && !said_alternation_) say(alternation_words(*found.alternation));
+    if (found.alternation && !said_alternation_) say(alternation_text(*found.alternation));
     said_alternation_ = found.alternation.has_value();
     if (found.cut.number > 0 && !said_cut_)
-      say("t = " + io::to_text(step.x.t, 4) + " s: Newton's method did not solve a step of " +
-          io::to_text(scene_.time.step, 3) + " s, steps are cut");
+      say("t = " + io::to_text(step.x.t, 4) + " s: " + cut_text());
     said_cut_ = found.cut.number > 0;
   }
-  void remember(Memory& memory) { memory(record_.remarks, said_alternation_, said_cut_); }
+  void archive(Archive& memory) { memory(record_.remarks, said_alternation_, said_cut_); }
 
  private:
+  /// Returns the reason for time steps that are shorter than the step of the case.
+  std::string cut_text() const {
+    const std::string length = io::to_text(scene_.time.step, 3) + " s";
+    if (scene_.time.integrator == "minimal_coordinates")
+      return "The error tolerance requires time steps shorter than " + length + ".";
+    return "Newton's method did not converge in a time step of " + length +
+           ". Shorter time steps are used.";
+  }
   void say(const std::string& words) const {
     if (request_.say) request_.say(words);
   }
   void start(const fem::MotionStep& step) {
     record_.remarks = start_remarks(scene_, step.model, step.x, step.so_far.start_change);
-    if (!start_words_.empty())
-      record_.remarks.insert(record_.remarks.begin(), "start: " + start_words_);
+    if (!start_text_.empty())
+      record_.remarks.insert(record_.remarks.begin(),
+                             "The start of the motion was chosen automatically: " + start_text_);
     for (const std::string& each : record_.remarks) say(each);
-    if (damps_no_multipliers(scene_)) say(undamped_words(scene_));
+    if (damps_no_multipliers(scene_)) say(undamped_text(scene_));
   }
 
   const Scene& scene_;
   const MotionRequest& request_;
-  const std::string& start_words_;
+  const std::string& start_text_;
   MotionRecord& record_;
   bool said_alternation_ = false, said_cut_ = false;
 };
 
 std::vector<VectorXd> densities_of(const MotionRequest& request) {
   std::vector<VectorXd> out;
-  for (const fem::Factors& factors : request.factors) out.push_back(factors.mass);
+  for (const fem::ScaleFactors& factors : request.factors) out.push_back(factors.mass);
   return out;
 }
 
@@ -66,19 +74,20 @@ class StepSequence {
                RunFolder* folder, MotionOutcome& out)
       : request_(request),
         model_(mechanism.model),
-        columns_(scene, mechanism.growths, request.balance),
-        messages_(scene, request, mechanism.start_words, out.record),
+        columns_(scene, mechanism.moving_roots, request.balance),
+        messages_(scene, request, mechanism.start_text, out.record),
         shapes_(scene, densities_of(request)) {
     if (!scene.measures.empty())
-      columns_.set_undeformed(fem::start_state(mechanism.model, mechanism.growths, 0,
-                                               fem::Start::rigid, mechanism.motion.placement));
+      columns_.set_undeformed(fem::start_state(mechanism.model, mechanism.moving_roots, 0,
+                                               fem::Start::rigid, mechanism.motion.body_poses));
     MotionRecord& record = out.record;
     record.table = Series(columns_.columns());
     write<SeriesWriter>(record.table);
     if (request.snapshots > 0) write<SnapshotWriter>(shapes_, request.snapshots, record.snapshots);
     if (folder) write<TableWriter>(folder->file(request.table), record.table);
     if (request.loads)
-      write<LoadCollector>(scene, std::span<const fem::Growth>(mechanism.growths), out.loads);
+      write<LoadCollector>(scene, std::span<const fem::MovingRoot>(mechanism.moving_roots),
+                           out.loads);
     if (folder && request.frames_every > 0)
       write<FrameWriter>(shapes_, request.frames_every, *folder);
   }
@@ -92,10 +101,10 @@ class StepSequence {
   }
 
   /// Saves or restores the state of the messages, columns and writers between two steps.
-  void remember(Memory& memory) {
-    messages_.remember(memory);
-    columns_.remember(memory, model_);
-    for (const auto& writer : writers_) writer->remember(memory);
+  void archive(Archive& memory) {
+    messages_.archive(memory);
+    columns_.archive(memory, model_);
+    for (const auto& writer : writers_) writer->archive(memory);
   }
 
  private:
@@ -124,14 +133,14 @@ Failure failure_in(const MotionRequest& request, const MotionRecord& record) {
 
 /// Returns the settings of a request on which the motion depends besides the case, as bytes.
 std::string bytes_of(const MotionRequest& request) {
-  Memory m;
+  Archive m;
   MeshChoice mesh = request.mesh;
   bool loads = request.loads, balance = request.balance, condition = request.condition;
   double every = request.frames_every;
   int snapshots = request.snapshots;
   std::optional<double> step = request.step;
   m(mesh.elements, mesh.refine, step, loads, balance, condition, every, snapshots);
-  for (fem::Factors factors : request.factors) m(factors.stiffness, factors.mass);
+  for (fem::ScaleFactors factors : request.factors) m(factors.stiffness, factors.mass);
   return m.bytes();
 }
 
@@ -146,7 +155,9 @@ class Resuming {
 
   void connect(fem::MotionSettings& motion) {
     if (checkpoint_ && request_.resume) resume(motion);
-    motion.between_steps = [this](const fem::TakeDown& take_down) { between_steps(take_down); };
+    motion.between_steps = [this](const fem::SaveCheckpoint& save_checkpoint) {
+      between_steps(save_checkpoint);
+    };
   }
 
  private:
@@ -157,22 +168,23 @@ class Resuming {
       if (request_.resumed) request_.resumed(request_.phase + words);
     };
     if (!kept) {
-      say(": begins anew" +
-          (why.empty() ? std::string() : ", " + request_.checkpoint + " cannot be used: " + why));
+      say(": The computation starts from the beginning" +
+          (why.empty() ? std::string(".")
+                       : ", because " + request_.checkpoint + " cannot be used: " + why + "."));
       return;
     }
-    Memory memory(*kept);
-    steps_.remember(memory);
+    Archive memory(*kept);
+    steps_.archive(memory);
     memory(motion.memory);
-    say(": goes on at t = " + io::to_text(out_.record.time().back(), 6) + " s");
+    say(": The computation resumes at t = " + io::to_text(out_.record.time().back(), 6) + " s.");
   }
 
-  void between_steps(const fem::TakeDown& take_down) {
-    const bool ends = request_.go_on && !request_.go_on();
+  void between_steps(const fem::SaveCheckpoint& save_checkpoint) {
+    const bool ends = request_.keep_running && !request_.keep_running();
     if (checkpoint_ && (ends || checkpoint_->is_due())) {
-      Memory memory;
-      steps_.remember(memory);
-      std::string motion = take_down();
+      Archive memory;
+      steps_.archive(memory);
+      std::string motion = save_checkpoint();
       memory(motion);
       checkpoint_->write(memory.bytes(), request_.frames_every > 0 ? folder_->frames()
                                                                    : std::vector<std::string>());
@@ -215,7 +227,7 @@ MotionOutcome run_motion(const PreparedCase& prepared, const MotionRequest& requ
   Resuming resuming(request, out, steps, folder);
   try {
     resuming.connect(mechanism.motion);
-    out.record.result = fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
+    out.record.result = fem::integrate(mechanism.model, mechanism.moving_roots, mechanism.motion,
                                        [&](const fem::MotionStep& step) { steps.add(step); });
   } catch (const Error& error) {
     const Failure failure = failure_in(request, out.record);

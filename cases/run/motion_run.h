@@ -11,7 +11,7 @@ namespace flexmorph::cases {
 /// Specification of a motion: its model, its time step, its output and its callbacks.
 struct MotionRequest {
   /// Scale factors of stiffness and mass of the cells, per design; empty means full material.
-  std::vector<fem::Factors> factors;
+  std::vector<fem::ScaleFactors> factors;
 
   MeshChoice mesh;             ///< Mesh of the motion; by default the mesh of the scene.
   std::optional<double> step;  ///< Time step [s]; absent means the time step of the scene.
@@ -30,7 +30,7 @@ struct MotionRequest {
   /// Receives the rows of a motion that fails or is interrupted; null means they are discarded.
   std::optional<MotionRecord>* unfinished = nullptr;
 
-  std::function<bool()> go_on;          ///< Cancellation callback of every step; false stops.
+  std::function<bool()> keep_running;   ///< Cancellation callback of every step; false stops.
   std::function<void(double)> reached;  ///< Callback that receives the time of every step [s].
 
   /// Callback that receives a message when something unusual happens during the motion.

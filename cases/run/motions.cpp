@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "fem/dynamics/side_by_side.h"
+#include "fem/dynamics/parallel_jobs.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
 
@@ -12,10 +12,10 @@ namespace flexmorph::cases {
 namespace {
 
 const char *const kCheckpoint = ".checkpoint", *const kVerified = "motion_verified.csv",
-                  *const kOnCells = "motion_judged.csv";
+                  *const kOnCells = "motion_on_cells.csv";
 
-std::vector<fem::Factors> uniform_factors(std::span<const mmc::BodyProblem> problems) {
-  std::vector<fem::Factors> out;
+std::vector<fem::ScaleFactors> uniform_factors(std::span<const mmc::BodyProblem> problems) {
+  std::vector<fem::ScaleFactors> out;
   for (const mmc::BodyProblem& p : problems) {
     const double volume = mmc::allowed_volume(p.goal).value_or(0.5);
     const VectorXd even = VectorXd::Constant(p.grid.n_cells(), volume);
@@ -24,8 +24,8 @@ std::vector<fem::Factors> uniform_factors(std::span<const mmc::BodyProblem> prob
   return out;
 }
 
-std::vector<fem::Factors> final_factors(std::span<const mmc::BodyProblem> problems) {
-  std::vector<fem::Factors> out;
+std::vector<fem::ScaleFactors> final_factors(std::span<const mmc::BodyProblem> problems) {
+  std::vector<fem::ScaleFactors> out;
   for (const mmc::BodyProblem& p : problems)
     out.push_back(mmc::dynamic_factors(p, p.design.components()));
   return out;
@@ -56,7 +56,7 @@ double measure_of(const Cycle& cycle, const MotionRecord& record) {
 
 /// Returns a message on the largest tip deflection; empty without a tip, because a body between two
 /// pins has none.
-std::string deflection_words(const MotionRecord& record) {
+std::string deflection_text(const MotionRecord& record) {
   const std::vector<size_t> tips = record.table.of_group(ColumnGroup::deflection);
   if (tips.empty()) return "";
   return ", largest tip deflection " +
@@ -70,7 +70,7 @@ MotionRequest resumable_request(const RunContext& run, const std::string& phase,
   MotionRequest out;
   out.phase = phase;
   out.table = table;
-  out.go_on = run.go_on;
+  out.keep_running = run.keep_running;
   out.reached = [&run, phase, end = run.scene().time.end](double t) {
     run.progress.way(phase, t / end,
                      "t = " + io::to_text(t, 4) + " of " + io::to_text(end, 4) + " s");
@@ -100,10 +100,11 @@ void remove_checkpoints(const FilesOf& files_of) {
   for (const std::string& path : files_of(kOnCells)) std::filesystem::remove(path, none);
 }
 
-std::string mesh_words(const Scene& scene, const fem::MotionResult& result) {
-  const auto is_even = [](const Body& body) { return body.is_even(); };
-  if (result.events.empty() && std::ranges::any_of(scene.bodies, is_even)) return "even mesh";
-  return std::to_string(result.events.size()) + " changes of the mesh";
+std::string mesh_text(const Scene& scene, const fem::MotionResult& result) {
+  const auto is_even = [](const Body& body) { return body.has_uniform_mesh(); };
+  if (result.events.empty() && std::ranges::any_of(scene.bodies, is_even)) return "uniform mesh";
+  return std::to_string(result.events.size()) +
+         (result.events.size() == 1 ? " mesh change" : " mesh changes");
 }
 
 MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
@@ -112,12 +113,12 @@ MotionOutcome CycleMotions::run_one(const MotionRequest& request) {
   MotionOutcome motion = run_motion(run_.prepared, request, run_.folder);
   seconds_ += cpu_seconds() - begin;
   const fem::MotionResult& result = motion.record.result;
-  run_.progress.say(request.phase + ": " + std::to_string(result.counts.steps) + " steps, " +
-                    mesh_words(run_.prepared.scene(), result) + deflection_words(motion.record));
+  run_.progress.say(request.phase + ": " + std::to_string(result.counts.steps) + " time steps, " +
+                    mesh_text(run_.prepared.scene(), result) + deflection_text(motion.record));
   return motion;
 }
 
-mmc::CycleMotion CycleMotions::loads(std::span<const fem::Factors> factors) {
+mmc::CycleMotion CycleMotions::loads(std::span<const fem::ScaleFactors> factors) {
   // If nothing is optimized, the motion that supplies the loads is also the motion with the design.
   const bool analysed = run_.scene().optimizer.max_iterations == 0;
   const bool first = ++n_loads_ == 1;
@@ -135,14 +136,14 @@ mmc::CycleMotion CycleMotions::loads(std::span<const fem::Factors> factors) {
   return {std::move(motion.loads), measure};
 }
 
-mmc::VerificationMotion CycleMotions::judge() {
-  if (!run_.scene().judges_on_cells()) return {};
-  return [this](std::span<const fem::Factors> factors) { return measure_on_cells(factors); };
+mmc::VerificationMotion CycleMotions::verify() {
+  if (!run_.scene().verifies_on_cells()) return {};
+  return [this](std::span<const fem::ScaleFactors> factors) { return measure_on_cells(factors); };
 }
 
-double CycleMotions::measure_on_cells(std::span<const fem::Factors> factors) {
+double CycleMotions::measure_on_cells(std::span<const fem::ScaleFactors> factors) {
   MotionRequest request = resumable_request(run_, "motion on cells", kOnCells);
-  request.checkpoint = "motion_judged_" + io::to_text(++n_assessed_) + kCheckpoint;
+  request.checkpoint = "motion_on_cells_" + io::to_text(++n_assessed_) + kCheckpoint;
   request.factors.assign(factors.begin(), factors.end());
   set_verified(*run_.scene().verify, request);
   last_on_cells_ = run_one(request).record;
@@ -175,7 +176,7 @@ void run_side_by_side(const RunContext& run, const std::vector<IndependentMotion
     jobs.push_back(
         {motion.request.phase, motion.cost, [&run, &motion](const std::function<bool()>& others) {
            MotionRequest request = motion.request;
-           request.go_on = [&] { return run.go_on() && others(); };
+           request.keep_running = [&] { return run.keep_running() && others(); };
            MotionOutcome found = run_motion(run.prepared, request, run.folder);
            *motion.record = std::move(found.record);
            if (motion.loads) *motion.loads = std::move(found.loads);
@@ -190,7 +191,7 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
                                            std::vector<fem::EslSets> loads,
                                            MotionResults& motions) {
   const Scene& scene = run.scene();
-  const bool on_cells = scene.judges_on_cells();
+  const bool on_cells = scene.verifies_on_cells();
   std::vector<IndependentMotion> all;
   if (!motions.motion) {
     MotionRequest designed = result_request(run, "motion with the design");
@@ -205,7 +206,7 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
     all.push_back({1, request, &motions.uniform});
   }
   if (scene.verify) {
-    run.progress.say("verification on " + scene.verify->words());
+    run.progress.say("The designs are verified on " + scene.verify->words() + ".");
     // Estimated cost relative to the mesh of the case: [verify] has a finer mesh and usually
     // shorter steps; a mesh of cells has hundreds of times as many elements.
     const double finer = on_cells ? 100 : 4;

@@ -18,9 +18,9 @@ MotionRequest resumable_request(const RunContext& run, const std::string& phase,
 /// estimate of the condition are set by the case and the options.
 MotionRequest result_request(const RunContext& run, const std::string& phase);
 
-/// Returns a message on the mesh changes of a motion: "16 changes of the mesh", or "even mesh" if a
-/// body has a uniform moving mesh and no mesh changed.
-std::string mesh_words(const Scene& scene, const fem::MotionResult& result);
+/// Returns a message on the mesh changes of a motion: "16 mesh changes", or "uniform mesh"
+/// if a body has a uniform moving mesh and no mesh changed.
+std::string mesh_text(const Scene& scene, const fem::MotionResult& result);
 
 /// A function that returns the paths of the files of a run whose names have the given ending.
 using FilesOf = std::function<std::vector<std::string>(const std::string& ending)>;
@@ -39,10 +39,10 @@ class CycleMotions {
   /// Computes the loads of all designs, and the number by which cycles are compared.
   /// @param factors  scale factors of stiffness and mass of the cells, one entry per design
   /// @throws as run_motion()
-  mmc::CycleMotion loads(std::span<const fem::Factors> factors);
+  mmc::CycleMotion loads(std::span<const fem::ScaleFactors> factors);
   /// Returns the motion on cells by which cycles are compared. The result is empty if the motions
   /// that supply the loads compare the cycles.
-  mmc::VerificationMotion judge();
+  mmc::VerificationMotion verify();
   /// Stores the last motion on cells, with its table, as the motion of the best design so far.
   void keep_assessed();
 
@@ -53,7 +53,7 @@ class CycleMotions {
   double seconds() const { return seconds_; }
 
  private:
-  double measure_on_cells(std::span<const fem::Factors> factors);
+  double measure_on_cells(std::span<const fem::ScaleFactors> factors);
   MotionOutcome run_one(const MotionRequest& request);
 
   const RunContext& run_;

@@ -11,7 +11,7 @@ namespace {
 
 /// Smallest accepted ratio of a width to the required width; it allows for round-off and for the
 /// tolerance of the outline.
-constexpr double kWithin = 0.99;
+constexpr double kWidthTolerance = 0.99;
 
 void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> regions,
                  VerifiedOutline& out) {
@@ -19,21 +19,22 @@ void find_narrow(const mmc::BodyProblem& problem, std::span<const Region> region
   out.thickness =
       problem.widths.solid > 0 ? problem.widths.solid : 2 * problem.bands.back().min_half_thickness;
   // Neighbouring inscribed discs belong to one location; only the narrowest disc is kept.
-  for (const NarrowPlace& p :
-       mmc::narrow_places_of(problem, regions, kWithin * std::max(out.cell, out.thickness))) {
+  for (const LengthScaleViolation& p : mmc::length_scale_violations_of(
+           problem, regions, kWidthTolerance * std::max(out.cell, out.thickness))) {
     const double wanted = p.solid ? out.thickness : out.cell;
-    const bool known = std::any_of(out.narrow.begin(), out.narrow.end(), [&](const NarrowPlace& q) {
-      return q.solid == p.solid && (q.center - p.center).norm() < 2 * wanted;
-    });
-    if (!known && p.width < kWithin * wanted) out.narrow.push_back(p);
+    const bool known =
+        std::any_of(out.narrow.begin(), out.narrow.end(), [&](const LengthScaleViolation& q) {
+          return q.solid == p.solid && (q.center - p.center).norm() < 2 * wanted;
+        });
+    if (!known && p.width < kWidthTolerance * wanted) out.narrow.push_back(p);
   }
 }
 
 }  // namespace
 
 VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& problem,
-                                  const fem::EslSets* loads, const std::function<bool()>& go_on,
-                                  RunFolder* folder) {
+                                  const fem::EslSets* loads,
+                                  const std::function<bool()>& keep_running, RunFolder* folder) {
   VerifiedOutline out;
   out.body = problem.body;
   out.curve_tolerance = problem.export_tolerance;
@@ -47,7 +48,7 @@ VerifiedOutline verify_outline_of(const Scene& scene, const mmc::BodyProblem& pr
                                                 ? mmc::loads_by_position(problem, *loads)
                                                 : loads_by_position(scene, problem);
     out.volume = area(regions) / area(mmc::domain_of(problem));
-    out.verification = mmc::verify_design(problem, regions, by_position, go_on);
+    out.verification = mmc::verify_design(problem, regions, by_position, keep_running);
     if (folder) write_outline_meshes(scene, problem, regions, *out.verification, *folder);
   } catch (const Error& error) {
     out.verification.reset();

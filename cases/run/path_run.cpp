@@ -53,7 +53,7 @@ class PathSteps {
       // The pose gives the positions of a body with material lines, whose points may still be
       // inside the hub. A body without material lines may be an arc, so its elements give the
       // positions.
-      starts_.push_back(body.row->lines ? start_pose(scene, body).place(o.point)
+      starts_.push_back(body.row->lines ? start_pose(scene, body).location(o.point)
                                         : fem::point_position(model_.body(o.body), start, o.point));
     }
     out.table = Series(path_columns(scene));
@@ -102,14 +102,14 @@ PathRecord run_path(const PreparedCase& prepared, const PathRequest& request, Ru
   const Scene& scene = prepared.scene();
   Mechanism mechanism = prepared.mechanism();
   fem::Workspace& model = mechanism.model;
-  fem::State x =
-      fem::start_state(model, mechanism.growths, 0, fem::Start::rigid, mechanism.motion.placement);
+  fem::State x = fem::start_state(model, mechanism.moving_roots, 0, fem::Start::rigid,
+                                  mechanism.motion.body_poses);
   PathRecord out;
   PathSteps steps(scene, mechanism, x, folder, out);
   const auto observe = [&](const fem::StaticStep& step) {
     steps.add(step);
     if (request.reached) request.reached(step.factor);
-    if (request.go_on && !request.go_on()) throw Interrupted();
+    if (request.keep_running && !request.keep_running()) throw Interrupted();
     return true;
   };
   try {

@@ -10,8 +10,8 @@ namespace flexmorph::cases {
 
 /// Settings of a run along a path of equilibria.
 struct PathRequest {
-  bool condition = false;       ///< True if the condition of the last matrix is estimated.
-  std::function<bool()> go_on;  ///< Cancellation callback of every equilibrium; false stops.
+  bool condition = false;              ///< True if the condition of the last matrix is estimated.
+  std::function<bool()> keep_running;  ///< Cancellation callback of every equilibrium; false stops.
   std::function<void(double)> reached;  ///< Callback with the load factor of every equilibrium.
 
   /// Receives the rows of a path that fails or is interrupted; null means they are discarded.

@@ -81,13 +81,13 @@ void Progress::iteration(const mmc::IterationReport& r, double most) {
   // With several bodies or cycles, the total of the run is added in parentheses, because the number
   // of the iteration restarts at 1 for every body and cycle.
   const bool alone = all_ == r.iteration;
-  text += (alone ? " of at most " : " (" + io::to_text(all_) + " of at most ") + io::to_text(most) +
-          (alone ? "" : ")");
+  text += (alone ? " of at most " : " (total " + io::to_text(all_) + " of at most ") +
+          io::to_text(most) + (alone ? "" : ")");
   text += time_left(since_begin(), iterations_ / (iterations_ + most - all_));
   // The compliance is not finite if the goal contains none.
   if (std::isfinite(r.state.compliance()))
     text += ", compliance " + formatted("%.5g", r.state.compliance());
-  text += ", volume " + formatted("%.4f", r.state.volume()) + ", kkt " +
+  text += ", volume fraction " + formatted("%.4f", r.state.volume()) + ", KKT residual " +
           formatted("%.1e", r.iterate.kkt);
   line(text, r.iteration == 1 || r.iteration % 25 == 0);
 }

@@ -27,14 +27,14 @@ PathRecord run_statics(const RunContext& run, std::optional<PathRecord>& unfinis
   PathRequest request;
   if (run.folder == nullptr) request.unfinished = &unfinished;
   request.condition = run.condition;
-  request.go_on = run.go_on;
+  request.keep_running = run.keep_running;
   request.reached = [&](double factor) {
     run.progress.way("statics", std::clamp(factor / to, 0.0, 1.0),
                      "load factor " + io::to_text(factor, 4) + " of " + io::to_text(to, 4));
   };
   PathRecord out = run_path(run.prepared, request, run.folder);
-  run.progress.say("statics: load factor " + io::to_text(out.result.factor, 5) + " after " +
-                   std::to_string(out.result.steps) + " steps, " +
+  run.progress.say("statics: load factor " + io::to_text(out.result.factor, 5) + " reached after " +
+                   std::to_string(out.result.steps) + " steps and " +
                    std::to_string(out.result.iterations) + " Newton iterations");
   return out;
 }
@@ -48,9 +48,9 @@ MotionRecord run_only_motion(const RunContext& run, std::optional<MotionRecord>&
   run.progress.begin(request.phase);
   MotionRecord out = run_motion(run.prepared, request, run.folder).record;
   const fem::MotionResult& result = out.result;
-  run.progress.say("motion: " + std::to_string(result.counts.steps) + " steps, " +
+  run.progress.say("motion: " + std::to_string(result.counts.steps) + " time steps, " +
                    std::to_string(result.counts.newton) + " Newton iterations, " +
-                   mesh_words(run.prepared.scene(), result));
+                   mesh_text(run.prepared.scene(), result));
   return out;
 }
 
@@ -63,8 +63,9 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   if (!std::filesystem::exists(path)) return {};
   if (!keeps_case(directory, file))
     throw Error::input("'" + directory +
-                       "' holds a run of another case, or of this one before it "
-                       "was changed: it cannot be resumed; without --resume it is moved");
+                       "' contains a run of another case, or of this case before it was "
+                       "changed. This run cannot be resumed. Without --resume, it is moved to "
+                       "another folder and a new run starts");
   const nlohmann::json run = nlohmann::json::parse(io::read_text(path));
   const std::string status = run.value("status", "");
   if (!status.starts_with("done")) return {};
@@ -72,14 +73,14 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   const nlohmann::json expect = run.value("expect", nlohmann::json::object());
   for (const auto& [name, expected] : expect.items())
     missed = missed || (!is_another_case(options.overrides) && !expected.value("holds", true));
-  return missed ? kMissed : 0;
+  return missed ? kExpectationsMissed : 0;
 }
 
 /// Removes the files that only resuming needs, from the folder of a complete run that was killed
 /// before it removed these files.
 void remove_progress_of_finished(const std::string& directory) {
   try {
-    io::OutputFolder folder(directory, io::OutputFolder::Begin::go_on);
+    io::OutputFolder folder(directory, io::OutputFolder::Begin::keep_running);
     remove_progress([&](const std::string& ending) { return folder.files_of(ending); });
   } catch (const Error&) {  // locked or read-only folder: the files may stay
   }
@@ -104,8 +105,8 @@ EndedRun run_prepared(const RunContext& run) {
       out.result.info.missing_exports = run.folder->missing_exports();
     }
   } catch (const std::bad_alloc&) {
-    out.error =
-        std::make_exception_ptr(Error::numerical(out_of_memory_words(run.prepared.extent())));
+    out.error = std::make_exception_ptr(
+        Error::numerical(out_of_memory_text(run.prepared.resource_estimate())));
   } catch (...) {
     out.error = std::current_exception();
   }
@@ -127,24 +128,25 @@ int run_case(const RunOptions& options) {
   if (options.resume)
     if (const std::optional<int> code = finished_with(directory, options, file)) {
       remove_progress_of_finished(directory);
-      std::printf("%s: finished before\n", directory.c_str());
+      std::printf("%s: The run is complete already. Nothing was computed.\n", directory.c_str());
       return *code;
     }
   RunFolder folder(directory, scene, options.threads > 1,
-                   options.resume ? RunFolder::Begin::go_on : RunFolder::Begin::anew);
+                   options.resume ? RunFolder::Begin::keep_running : RunFolder::Begin::anew);
   keep_case(file, options.explain, folder);
   if (scene.output.vtk) folder.write_text("paraview.py", kParaViewScript);
   end_on_signals();
   Progress progress(options.quiet);
-  progress.say(scene.title + " -> " + directory);
+  progress.say(scene.title + ": The results are written to " + directory);
   if (options.resume && scene.statics)
-    progress.say("a path of equilibria is not resumed: it starts anew");
+    progress.say(
+        "A path of equilibria cannot be resumed. The computation starts from the beginning.");
   if (!folder.moved_to().empty())
-    progress.say("the run that was there is now " + folder.moved_to());
+    progress.say("The earlier run in this folder was moved to " + folder.moved_to());
   RunFiles files(scene, folder, options.threads, begin);
   files.write({}, "running", "");
-  EndedRun ended = run_prepared(
-      {prepared, &folder, progress, goes_on, options.threads, options.condition, options.resume});
+  EndedRun ended = run_prepared({prepared, &folder, progress, keeps_running, options.threads,
+                                 options.condition, options.resume});
   return end_run(std::move(ended), !is_another_case(options.overrides), files, progress);
 }
 

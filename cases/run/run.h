@@ -27,7 +27,7 @@ struct RunOptions {
 
 /// Runs a case, from its file to its run folder.
 /// @return exit code: 0 for a complete run, 4 for an interrupted run (its results so far are
-///         written), or kMissed
+///         written), or kExpectationsMissed
 /// @throws Error; a numerical one is thrown after the failure is written into the folder
 int run_case(const RunOptions& options);
 

@@ -11,11 +11,12 @@ struct RunContext {
   const PreparedCase& prepared;  ///< The case that is computed.
   RunFolder* folder;             ///< Folder that receives all files; null means no files.
   Progress& progress;            ///< Display that receives messages and progress.
-  std::function<bool()> go_on;   ///< Cancellation callback of steps and iterations; false stops.
-  int threads = 1;               ///< Number of motions computed at the same time.
-  bool condition = false;        ///< True if conditions of matrices are estimated at the end.
-  bool resume = false;           ///< True if the run resumes the run in its folder.
-  bool uniform = true;           ///< True if motions with uniform material are computed.
+  std::function<bool()>
+      keep_running;        ///< Cancellation callback of steps and iterations; false stops.
+  int threads = 1;         ///< Number of motions computed at the same time.
+  bool condition = false;  ///< True if conditions of matrices are estimated at the end.
+  bool resume = false;     ///< True if the run resumes the run in its folder.
+  bool uniform = true;     ///< True if motions with uniform material are computed.
 
   /// Callback that receives the report of every design iteration, after the iteration is written.
   std::function<void(const mmc::IterationReport&)> iteration{};

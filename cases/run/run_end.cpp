@@ -29,12 +29,12 @@ Seconds phases_of(const DesignResult& design, const RunFolder& folder) {
   if (out.empty()) return out;
   for (auto& [name, seconds] : out)
     if (name == "outlines")
-      for (const mmc::BodyOutcome& o : design.outcomes) seconds += o.sharp.seconds_outlines;
+      for (const mmc::BodyOutcome& o : design.outcomes) seconds += o.crisp.seconds_outlines;
   double outlines = 0;
   for (const VerifiedOutline& v : design.outlines) outlines += v.seconds;
-  out.emplace_back("idle_components", design.seconds_idle);
+  out.emplace_back("unloaded_components", design.seconds_unloaded);
   out.emplace_back("motion", design.seconds_motion);
-  out.emplace_back("judge", outlines);
+  out.emplace_back("outline_verification", outlines);
   out.emplace_back("verification", design.seconds_verification);
   return out;
 }
@@ -51,7 +51,7 @@ void end_on_signals() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-bool goes_on() { return !interrupted; }
+bool keeps_running() { return !interrupted; }
 
 bool is_another_case(std::span<const std::string> overrides) {
   return std::any_of(overrides.begin(), overrides.end(), [](const std::string& each) {
@@ -72,7 +72,7 @@ void complete_result(const Scene& scene, const std::string& status, const std::s
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   RunInfo& info = result.info;
-  info.status = status == "done" ? done_words(result.warnings) : status;
+  info.status = status == "done" ? done_text(result.warnings) : status;
   info.message = message;
   info.seconds_cpu = cpu_seconds();
   info.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
@@ -105,7 +105,7 @@ int end_early(EndedRun& ended, RunFiles& files, Progress& progress) {
     std::rethrow_exception(ended.error);
   } catch (const Interrupted&) {
     files.write(std::move(ended.result), "interrupted", "");
-    progress.say("interrupted: what was computed is in " + files.folder().path());
+    progress.say("interrupted: The results computed so far are in " + files.folder().path());
     return 4;
   } catch (const std::exception& error) {
     ended.result.failure = failure_of(error, progress.where());
@@ -136,13 +136,14 @@ int say_end(const RunResult& result, bool is_case, Progress& progress, const std
   for (const Expected& expected : result.expectations) {
     if (expected.holds) continue;
     missed += is_case;
-    progress.object(is_case ? "missed" : "not as the case without --set", expected.words);
+    progress.object(is_case ? "expectation not met" : "different from the case without --set",
+                    expected.words);
   }
-  progress.say(result.info.status + ": " + summary_words(result) +
+  progress.say(result.info.status + ": " + summary_text(result) +
                counted(result.warnings.size(), "warning", "warnings") +
-               counted(missed, "expectation missed", "expectations missed") + ": " + path +
+               counted(missed, "expectation not met", "expectations not met") + ": " + path +
                "/report.html");
-  return missed > 0 || !usable(result.warnings) ? kMissed : 0;
+  return missed > 0 || !usable(result.warnings) ? kExpectationsMissed : 0;
 }
 
 }  // namespace

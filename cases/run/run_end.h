@@ -14,14 +14,14 @@
 namespace flexmorph::cases {
 
 /// Exit code of a run that is complete, but violates an expectation of its case or is not usable.
-inline constexpr int kMissed = 5;
+inline constexpr int kExpectationsMissed = 5;
 
 /// Installs handlers with which SIGINT, SIGTERM and SIGHUP end a run: the run completes its current
 /// step or iteration and writes its results. A second signal ends the process at once. SIGPIPE is
 /// ignored, so that a run continues when the reader of its output ends.
 void end_on_signals();
 /// Tells whether none of the signals of end_on_signals() was received.
-bool goes_on();
+bool keeps_running();
 
 /// Tells whether overrides change the case, so that [expect] does not apply to it. Overrides of
 /// output and of expectations do not change the case.
@@ -74,7 +74,7 @@ class RunFiles {
 /// path of its report.
 /// @param is_case  true if expectations count, because no override changes the case
 /// @return exit code: 0 for a complete run, 4 for an interrupted run (its results so far are
-///         written), or kMissed
+///         written), or kExpectationsMissed
 /// @throws the error of the run, after its files; Error (numerical) when a file cannot be written
 int end_run(EndedRun ended, bool is_case, RunFiles& files, Progress& progress);
 

@@ -4,32 +4,33 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem/dynamics/starts/carrier.h"
+#include "fem/dynamics/starts/driven_frame.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kSaid = 1e-9;  // smallest reported difference, above round-off of assembly
+constexpr double kReportedLength =
+    1e-9;  // smallest reported difference, above round-off of assembly
 // Relative error, with respect to the largest velocity, of the finite differences that compute the
 // rates of a prestretched start.
 constexpr double kDifference = 1e-6;
-constexpr size_t kMost = 5;  // largest number of bodies that are named
+constexpr size_t kMaxListed = 5;  // largest number of bodies that are named
 
 /// Returns a list of names for messages: "a, b and 3 more".
 std::string list_of(const std::vector<std::string>& all) {
   std::string out;
-  for (size_t i = 0; i < std::min(all.size(), kMost); ++i) out += (i > 0 ? ", " : "") + all[i];
-  if (all.size() > kMost) out += " and " + std::to_string(all.size() - kMost) + " more";
+  for (size_t i = 0; i < std::min(all.size(), kMaxListed); ++i) out += (i > 0 ? ", " : "") + all[i];
+  if (all.size() > kMaxListed) out += " and " + std::to_string(all.size() - kMaxListed) + " more";
   return out;
 }
 
-std::string moved_words(const RigidBody& body, const fem::FrameMotion& frame) {
+std::string moved_text(const RigidBody& body, const fem::FrameMotion& frame) {
   const double by = (frame.origin - body.position).norm(),
                turn = std::remainder(frame.angle - body.angle, 2 * std::numbers::pi);
   std::string out;
-  if (by > kSaid) out = "by " + io::to_text(by, 3) + " m";
-  if (std::abs(turn) > kSaid)
+  if (by > kReportedLength) out = "by " + io::to_text(by, 3) + " m";
+  if (std::abs(turn) > kReportedLength)
     out += (out.empty() ? "by " : " and ") + io::to_text(turn, 3) + " rad";
   return out.empty() ? "" : "'" + body.name + "' " + out;
 }
@@ -37,19 +38,18 @@ std::string moved_words(const RigidBody& body, const fem::FrameMotion& frame) {
 /// Returns a message on velocities of a rigid body that differ from the given ones; empty if none
 /// does.
 /// @param largest  is increased to the largest difference from a given velocity of a point [m/s]
-std::string speed_words(const RigidBody& body, const fem::FrameMotion& frame, double& largest) {
+std::string speed_text(const RigidBody& body, const fem::FrameMotion& frame, double& largest) {
   std::string out;
   if (body.velocity)
-    if (const double by = (frame.origin_rate - *body.velocity).norm(); by > kSaid) {
+    if (const double by = (frame.origin_rate - *body.velocity).norm(); by > kReportedLength) {
       out = "velocity [" + io::to_text(frame.origin_rate.x(), 6) + ", " +
-            io::to_text(frame.origin_rate.y(), 6) + "], " + io::to_text(by, 3) +
-            " m/s from the given one";
+            io::to_text(frame.origin_rate.y(), 6) + "] (difference " + io::to_text(by, 3) + " m/s)";
       largest = std::max(largest, by);
     }
   if (body.angular_velocity)
-    if (const double by = std::abs(frame.angle_rate - *body.angular_velocity); by > kSaid)
+    if (const double by = std::abs(frame.angle_rate - *body.angular_velocity); by > kReportedLength)
       out += (out.empty() ? "" : ", ") + ("angular_velocity " + io::to_text(frame.angle_rate, 6)) +
-             ", " + io::to_text(by, 3) + " rad/s from the given one";
+             " (difference " + io::to_text(by, 3) + " rad/s)";
   return out.empty() ? "" : "'" + body.name + "' " + out;
 }
 
@@ -62,19 +62,21 @@ std::vector<std::string> start_remarks(const Scene& scene, const fem::Model& mod
   for (const RigidBody& body : scene.rigid_bodies) {
     const fem::FrameMotion frame = fem::frame_of(model.body(body.name), x);
     if (body.is_placed)
-      if (std::string words = moved_words(body, frame); !words.empty()) moved.push_back(words);
-    if (std::string words = speed_words(body, frame, largest); !words.empty())
+      if (std::string words = moved_text(body, frame); !words.empty()) moved.push_back(words);
+    if (std::string words = speed_text(body, frame, largest); !words.empty())
       faster.push_back(words);
   }
   if (!moved.empty())
-    out.push_back("at the start joints moved bodies from where the case puts them: " +
+    out.push_back("At the start, joints moved bodies from their positions in the case: " +
                   list_of(moved));
   if (!faster.empty())
-    out.push_back("the start has other velocities than the case gives: " + list_of(faster));
+    out.push_back("The velocities at the start differ from the velocities in the case: " +
+                  list_of(faster));
   const double speed = model.scales().cwiseProduct(x.v).lpNorm<Eigen::Infinity>();
-  if (change > kSaid + kDifference * speed)
-    out.push_back("velocities of the start were changed by up to " +
-                  io::to_text(std::max(change, largest), 3) + " m/s, so that joints allow them");
+  if (change > kReportedLength + kDifference * speed)
+    out.push_back("The velocities at the start were changed by up to " +
+                  io::to_text(std::max(change, largest), 3) +
+                  " m/s, because the joints do not allow the original velocities");
   return out;
 }
 

@@ -32,11 +32,13 @@ std::vector<GivenPart> given_parts(const std::vector<std::string>& options) {
   for (const std::string& each : options) {
     const size_t at = each.find('=');
     if (at == std::string::npos || at == 0 || at + 1 == each.size())
-      throw Error::input("--part " + each + ": a part is BODY=FILE, as plate=part.dxf");
+      throw Error::input("--part " + each +
+                         ": a part has the form BODY=FILE, for example plate=part.dxf");
     GivenPart part{each.substr(0, at), each.substr(at + 1)};
     if (std::any_of(out.begin(), out.end(),
                     [&](const GivenPart& other) { return other.body == part.body; }))
-      throw Error::input("--part " + each + ": '" + part.body + "' has a part already");
+      throw Error::input("--part " + each + ": the body '" + part.body +
+                         "' has two parts; give one part for each body");
     out.push_back(std::move(part));
   }
   return out;
@@ -101,15 +103,19 @@ Scene with_parts(const GivenCase& given, const std::vector<GivenPart>& parts) {
     const auto design = std::find_if(out.designs.begin(), out.designs.end(),
                                      [&](const BodyDesign& d) { return d.body == part.body; });
     if (design == out.designs.end())
-      throw Error::input(
-          "--part " + part.body + "=" + part.path + ": the case has no design of '" + part.body +
-          "'" + (out.designs.empty() ? std::string() : "; it designs " + joined(bodies_of(out))));
+      throw Error::input("--part " + part.body + "=" + part.path + ": the case has no design of '" +
+                         part.body + "'" +
+                         (out.designs.empty()
+                              ? std::string()
+                              : "; the designed bodies are " + joined(bodies_of(out))));
     design->part = read_part(part.path, given.scene, *design);
   }
   for (const BodyDesign& design : out.designs)
     if (!design.part && design.start.empty())
-      throw Error::input("'" + design.body + "' has no part and no design: --part " + design.body +
-                         "=FILE, or the folder of a finished run in place of the case");
+      throw Error::input("the body '" + design.body +
+                         "' has neither a part nor a finished design. Give a part with --part " +
+                         design.body +
+                         "=FILE, or give the folder of a finished run instead of the case");
   return out;
 }
 
@@ -135,12 +141,12 @@ EndedRun evaluate_design(const GivenCase& given, const std::string& directory,
   RunFolder folder(directory, prepared.scene(), options.threads > 1);
   keep_case(given.file, false, folder);
   RunFiles files(prepared.scene(), folder, options.threads, RunFiles::Clock::now());
-  progress.say("the design of " + given.run);
-  RunContext context{prepared, &folder, progress, goes_on, options.threads};
+  progress.say("The design of the run " + given.run + " is evaluated.");
+  RunContext context{prepared, &folder, progress, keeps_running, options.threads};
   context.uniform = false;
   EndedRun out = run_prepared(context);
   if (out.error) {
-    files.write_failed(out.result, "the evaluation of the design ended early");
+    files.write_failed(out.result, "the evaluation of the design did not finish");
     return out;
   }
   out.result = files.write(std::move(out.result), "done", "");
@@ -162,8 +168,8 @@ PartComparison begin_comparison(const Scene& scene, const GivenCase& given,
   out.notes = motion_notes(scene);
   if (given.run.empty())
     out.notes.emplace_back(
-        "no design is beside the part: that of the finished run whose folder takes the place of "
-        "the case would be");
+        "the part is not compared with a design; for this comparison, give the folder of a "
+        "finished run instead of the case");
   return out;
 }
 
@@ -187,7 +193,7 @@ void say_numbers(const PartComparison& comparison, Progress& progress) {
                                  (change.empty() ? "" : " (" + change + ")");
     };
     progress.say((r[0].empty() ? "" : r[0] + ": ") + r[1] + " " + r[2] +
-                 beside("design", r[3], r[4]) + beside("uniform", r[5], r[6]));
+                 beside("design", r[3], r[4]) + beside("uniform material", r[5], r[6]));
   }
 }
 
@@ -207,9 +213,9 @@ int verify_parts(const VerifyOptions& options) {
   PartComparison comparison = begin_comparison(scene, given, parts, folder);
   end_on_signals();
   Progress progress(options.quiet);
-  progress.say(scene.title + " -> " + directory);
+  progress.say(scene.title + ": The results are written to " + directory);
   if (!folder.moved_to().empty())
-    progress.say("the run that was there is now " + folder.moved_to());
+    progress.say("The earlier run in this folder was moved to " + folder.moved_to());
   RunFiles files(scene, folder, options.threads, begin);
   files.write({}, "running", "");
   std::optional<RunResult> design;
@@ -220,8 +226,8 @@ int verify_parts(const VerifyOptions& options) {
     design = std::move(evaluated.result);
   }
   if (!ended.error) {
-    progress.say("the part");
-    ended = run_prepared({prepared, &folder, progress, goes_on, options.threads});
+    progress.say("The part is evaluated.");
+    ended = run_prepared({prepared, &folder, progress, keeps_running, options.threads});
   }
   if (!ended.error) {
     comparison.numbers = compared_numbers(scene, ended.result, design ? &*design : nullptr);

@@ -10,21 +10,38 @@ using io::Key;
 using io::positive;
 using io::Table;
 
+/// Returns the numbers that had another name in the last version.
+io::Glossary former_quantities() {
+  return {{"sharp_compliance", "crisp_compliance"},
+          {"sharp_volume", "crisp_volume"},
+          {"energy.error", "energy.error"},
+          {"motion.energy_defect", "motion.energy_error"}};
+}
+
 const Key& kQuantity =
     io::key("accuracy", "quantity")
+        .renames(former_quantities())
         .text("a quantity of interest")
         .texts("a quantity of interest")
         .tables_of()
-        .says("A column of motion.csv or path.csv, a figure of the design, a number of run.json.");
-const Key& kName = io::key("accuracy.quantity", "name")
-                       .text("a quantity of interest")
-                       .says("Likewise, of one that has its own time, scale or reference.");
-const Key& kLadders = io::key("accuracy", "ladders")
-                          .texts("a ladder")
-                          .otherwise_as("all that apply")
-                          .says("The parameters that are refined, one after the other.");
+        .description("Quantity of interest: table column, or number of a design or of run.json.");
+const Key& kName =
+    io::key("accuracy.quantity", "name")
+        .renames(former_quantities())
+        .text("a quantity of interest")
+        .description(
+            "Name of a quantity of interest that gets a separate time, scale or reference.");
+const Key& kRefinements =
+    io::key("accuracy", "refinements")
+        .formerly("ladders")
+        .texts("a refinement series")
+        .otherwise_as("all that apply")
+        .description("Discretization parameters that are refined, one after the other.");
 const io::Choice<bool> kDesign(
-    io::key("accuracy", "design").otherwise("start").says("Designs as they start, or as they end."),
+    io::key("accuracy", "design")
+        .otherwise("start")
+        .description(
+            "Designs of the study: the initial ones (`start`) or the final ones (`optimized`)."),
     "a design", {{"start", false}, {"optimized", true}});
 
 // Keys of [accuracy], which apply to all quantities, and of one [[accuracy.quantity]].
@@ -32,29 +49,32 @@ const io::Choice<Interest::At> kAt(
     io::shared_key({"accuracy", "accuracy.quantity"}, "at")
         .number(io::not_negative("a time", "s"))
         .otherwise_as("`end`")
-        .says("When a column is looked at; `max`: its largest size."),
+        .description("Time at which a column is evaluated; `max` is its largest absolute value."),
     "a time in words", {{"end", Interest::At::end}, {"max", Interest::At::max}});
 const Key& kScale = io::shared_key({"accuracy", "accuracy.quantity"}, "scale")
                         .number(positive("a scale of errors"))
                         .otherwise_as("the value itself")
-                        .says("Errors are parts of it.");
-const Key& kReference = io::shared_key({"accuracy", "accuracy.quantity"}, "reference")
-                            .table()
-                            .otherwise_as("none")
-                            .says("What is known from elsewhere.");
+                        .description("Scale of relative errors, in the unit of the quantity.");
+const Key& kReference =
+    io::shared_key({"accuracy", "accuracy.quantity"}, "reference")
+        .table()
+        .otherwise_as("none")
+        .description("Reference value of the quantity of interest, from another source.");
 constexpr const char* kInAll = "accuracy.reference";
 constexpr const char* kInOne = "accuracy.quantity.reference";
 const Key& kValue = io::shared_key({kInAll, kInOne}, "value")
                         .number(any_number("a reference"))
-                        .otherwise_as("`file` is given")
-                        .says("The number.");
+                        .otherwise_as("required unless `file` is given")
+                        .description("Reference value of the quantity.");
 const Key& kFile = io::shared_key({kInAll, kInOne}, "file")
                        .text("a CSV file")
-                       .otherwise_as("`value` is given")
-                       .says("Or a table beside the case, with a column of this name.");
+                       .otherwise_as("required unless `value` is given")
+                       .description(
+                           "CSV file beside the case file; its column with the name of the "
+                           "quantity is the reference.");
 const Key& kSource = io::shared_key({kInAll, kInOne}, "source")
-                         .text("where the reference comes from")
-                         .says("Where it comes from.");
+                         .text("the source of a reference")
+                         .description("Source of the reference, such as a publication.");
 
 /// Reads the keys that stand in [accuracy] for all quantities, or in one [[accuracy.quantity]].
 void read_shared(const Table& t, Interest& interest) {
@@ -68,7 +88,7 @@ void read_shared(const Table& t, Interest& interest) {
   if (!t.has(kReference)) return;
   const Table reference = t.table(kReference);
   if (reference.has(kValue) == reference.has(kFile))
-    reference.fail("a reference has either a `value` or a `file`");
+    reference.fail("a reference needs either a `value` or a `file`");
   if (reference.has(kValue))
     interest.value = reference.number(kValue);
   else
@@ -77,9 +97,9 @@ void read_shared(const Table& t, Interest& interest) {
 }
 
 void add(Accuracy& out, const Table& t, const Key& key, const Interest& interest) {
-  if (interest.name.empty()) t.fail(key, "a quantity has a name");
+  if (interest.name.empty()) t.fail(key, "the name of a quantity is not empty");
   for (const Interest& other : out.quantities)
-    if (other.words() == interest.words()) t.fail(key, "the same quantity twice");
+    if (other.words() == interest.words()) t.fail(key, "this quantity is listed a second time");
   out.quantities.push_back(interest);
 }
 
@@ -108,8 +128,8 @@ std::vector<std::string> overrides_of_reference_files(const Table& t) {
 
 Accuracy read_accuracy(const Table& t) {
   Accuracy out;
-  out.place = t.place();
-  if (t.has(kLadders)) out.ladders = t.strings(kLadders);
+  out.location = t.location();
+  if (t.has(kRefinements)) out.refinements = t.strings(kRefinements);
   out.optimized = t.choice(kDesign);
   Interest shared;
   read_shared(t, shared);
@@ -118,7 +138,7 @@ Accuracy read_accuracy(const Table& t) {
     add(out, t, kQuantity, shared);
   } else if (t.is_list_of_strings(kQuantity)) {
     if (shared.has_reference())
-      t.fail(kReference, "several quantities have references of their own: [[accuracy.quantity]]");
+      t.fail(kReference, "several quantities need separate references: use [[accuracy.quantity]]");
     for (const std::string& name : t.strings(kQuantity)) {
       shared.name = name;
       add(out, t, kQuantity, shared);
@@ -132,7 +152,9 @@ Accuracy read_accuracy(const Table& t) {
     }
   }
   if (out.quantities.empty())
-    t.fail("an [accuracy] has a `quantity`: a name, a list of names, or [[accuracy.quantity]]");
+    t.fail(
+        "the table [accuracy] needs a `quantity`: a name, a list of names, or "
+        "[[accuracy.quantity]]");
   return out;
 }
 

@@ -15,7 +15,7 @@ struct Interest {
   enum class At { end, max, time };
 
   /// Name of a column of motion.csv or path.csv ("plate.corner_z"), of a number of the design
-  /// ("compliance", "arm.volume"), or of a number of run.json ("motion.energy_defect").
+  /// ("compliance", "arm.volume"), or of a number of run.json ("motion.energy_error").
   std::string name;
 
   At at = At::end;              ///< Point of evaluation; At::max takes the largest absolute value.
@@ -36,9 +36,9 @@ struct Accuracy {
   std::vector<Interest> quantities;  ///< Quantities of interest, at least one.
 
   /// Names of the discretization parameters to refine, not checked here; empty: all that apply.
-  std::vector<std::string> ladders;
+  std::vector<std::string> refinements;
 
-  std::string place;       ///< File and line of the table, for messages.
+  std::string location;    ///< File and line of the table, for messages.
   bool optimized = false;  ///< True if the optimized design is used (design = "optimized").
 };
 

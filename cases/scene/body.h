@@ -20,17 +20,17 @@ namespace flexmorph::cases {
 
 /// Model of the material reservoir of a plate out of which material flows: none, a coil, or a rigid
 /// rod behind the outlet.
-enum class Stored { none, coil, rod };
+enum class Reservoir { none, coil, rod };
 
 /// Material flow through the root of a plate, and the mesh control that goes with it: lines of
 /// nodes are inserted and removed (fem/README.md, Insertion and removal), or all lines move and the
-/// mesh stays uniform (Even meshes).
+/// mesh stays uniform (Uniform meshes).
 struct Flow {
   double speed = 0;  ///< Rate at which material leaves the hub [m/s]; negative: it enters.
   Law length;        ///< Drive of the length outside of the hub [m]; `speed` is then 0.
   std::function<fem::Motion(double)> motion;  ///< The drive `length`; empty: constant speed.
   double longest = 0, shortest = 0;           ///< Extreme lengths of that drive over the run [m].
-  bool even = false;  ///< True if all lines move and elements stay equally long.
+  bool uniform = false;  ///< True if all lines move and elements stay equally long.
 
   /// Upper limit of the element length [m]: longer boundary elements are split, and a uniform mesh
   /// has enough elements to keep the limit. 0: a uniform mesh has no limit.
@@ -40,14 +40,14 @@ struct Flow {
   /// limit.
   double min_length = 0;
 
-  Stored stored = Stored::none;  ///< Model of the material reservoir.
+  Reservoir reservoir = Reservoir::none;  ///< Model of the material reservoir.
 
   /// Location of the coil, or of the front end of the rod, in the axes of the body that carries the
   /// root [m]; absent: the outlet.
-  std::optional<Vec2> stored_at;
+  std::optional<Vec2> reservoir_at;
   /// Length of the stored material at the start [m]; absent: the length that leaves until the body
   /// is longest.
-  std::optional<double> stored_length;
+  std::optional<double> reservoir_length;
 };
 
 /// An m-line of the mesh of a body that is not at its location in a uniform mesh, or is free: its
@@ -70,7 +70,7 @@ struct BodyHeat {
   double expansion = 0;  ///< Coefficient of thermal expansion [1/K].
   Law rise;              ///< Final temperature rise, or the drive of the temperature rise [K].
   std::string profile;   ///< Time profile of the rise; empty: constant, or given by a drive.
-  double start = 0, settle = 0;  ///< Start and duration of the rise [s].
+  double start = 0, duration = 0;  ///< Start and duration of the rise [s].
 
   /// Volume over which the elastic energy is integrated.
   fem::ThermalVolume volume = fem::ThermalVolume::grown;
@@ -128,7 +128,7 @@ struct Body {
   /// Returns the smallest material coordinate Y [m].
   double low() const { return in_space() ? 0 : -0.5 * width; }
   /// Returns the kind of body to which its terms must belong.
-  fem::TermPlace place() const;
+  fem::TermDomain term_domain() const;
   /// Returns true if the row of one of its terms satisfies a condition.
   template <class Condition>
   bool has_term(const Condition& condition) const {
@@ -142,21 +142,21 @@ struct Body {
   }
   /// Returns the length of material in the reservoir at the start [m]; 0 without a reservoir.
   /// @param end  end of the run [s]
-  double stored_at_start(double end) const {
-    if (!flow || flow->stored == Stored::none) return 0;
-    return flow->stored_length.value_or(longest(end) - length);
+  double reservoir_at_start(double end) const {
+    if (!flow || flow->reservoir == Reservoir::none) return 0;
+    return flow->reservoir_length.value_or(longest(end) - length);
   }
   /// Returns true if the material coordinate of a line is an unknown.
-  bool has_free_lines() const {
+  bool has_eulerian_lines() const {
     return std::any_of(lines.begin(), lines.end(), [](const BodyLine& l) { return l.free; });
   }
   /// Returns true if lines of nodes are inserted and removed during the motion.
   bool mesh_changes() const {
-    return (flow && !is_even()) || (!lines.empty() && lines.front().has_limits());
+    return (flow && !has_uniform_mesh()) || (!lines.empty() && lines.front().has_limits());
   }
   /// Returns true if all lines move with the length of the body, so that elements stay equally
   /// long. The lines of cells do not, because they keep their locations in the design.
-  bool is_even() const { return flow && flow->even && !on_cells(); }
+  bool has_uniform_mesh() const { return flow && flow->uniform && !on_cells(); }
   /// Returns the material coordinates of the m-lines at the start (count + 1) [m].
   /// @param root   material coordinate of the first m-line [m]
   /// @param count  number of elements along the body

@@ -13,8 +13,8 @@ extern const io::Key &kBodyName, &kElement, &kTerms, &kLength, &kThickness, &kLi
 }  // namespace body_keys
 
 namespace flow_keys {
-extern const io::Key &kSpeed, &kLength, &kMesh, &kMaxLength, &kMinLength, &kStored, &kStoredAt,
-    &kStoredLength;
+extern const io::Key &kSpeed, &kLength, &kMesh, &kMaxLength, &kMinLength, &kReservoir,
+    &kReservoirAt, &kReservoirLength;
 }  // namespace flow_keys
 
 /// Declares the keys of the numbers that terms read. They are declared on demand because the table

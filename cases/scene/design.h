@@ -65,7 +65,7 @@ struct BodyDesign {
 
   bool asks_motion = false;   ///< True if the case names responses of the motion itself.
   double min_thickness = 0;   ///< Lower bound c_min of the half-thickness of components [m].
-  Widths widths;              ///< Smallest widths of material and gaps of the union [m]; 0: any.
+  MinimumWidths widths;       ///< Smallest widths of material and gaps of the union [m]; 0: any.
   double fillet_radius = 0;   ///< Radius of fillets at inner corners of the part [m]; 0: none.
   double half_length = 0;     ///< Half-length of the initial components [m].
   double half_thickness = 0;  ///< Half-thickness of the initial components [m].
@@ -136,7 +136,7 @@ struct Cycle {
   int checkpoints = 0;  ///< Number of checkpoints, see fem::GradientSettings.
 };
 
-/// Settings of the optimality certificate of the final designs, see mmc::MotionCertificate:
+/// Settings of the optimality certificate of the final designs, see mmc::OptimalityCertificate:
 /// [certificate].
 struct Certify {
   double cell = 0;      ///< Cell of its motion [m]; 0: cells of the designs.

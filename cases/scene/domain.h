@@ -10,7 +10,7 @@
 namespace flexmorph::cases {
 
 /// A location where a static plate is supported or loaded.
-struct Place {
+struct NodeRegion {
   /// Kind of a location: an edge of the bounding box, a point, or the nodes in a box or disc.
   enum class Kind { edge, point, box, disc };
   Kind kind = Kind::point;  ///< Kind of this location.
@@ -25,20 +25,20 @@ struct Place {
 
 /// A support of a static plate.
 struct PlaneSupport {
-  Place place;                ///< Location of the supported nodes.
+  NodeRegion location;        ///< Location of the supported nodes.
   bool x = false, y = false;  ///< True if displacements in x (in y) are held at zero.
 };
 
 /// A force and a moment on a static plate.
 struct PlaneForce {
-  Place place;           ///< Location of the loaded nodes.
+  NodeRegion location;   ///< Location of the loaded nodes.
   Vec2 force{0, 0};      ///< Resultant force [N].
   double moment = 0;     ///< Moment about the middle of the location, counterclockwise [N m].
   bool bearing = false;  ///< True if a pin presses on half of a bore; false: evenly spread force.
 };
 
 /// A set of forces that act at the same time.
-struct LoadCase {
+struct StaticLoadCase {
   std::string name;                ///< Name of the load case in tables.
   double weight = 1;               ///< Weight of its compliance in the sum [-].
   std::vector<PlaneForce> forces;  ///< Forces of the load case.
@@ -54,7 +54,7 @@ struct Domain {
   double poisson_ratio = 0.3;          ///< Poisson's ratio [-].
   double density = 0;                  ///< Density [kg/m^3]; 0: neither mass nor weight is defined.
   std::vector<PlaneSupport> supports;  ///< Supports of the plate.
-  std::vector<LoadCase> loads;         ///< Load cases of the plate.
+  std::vector<StaticLoadCase> loads;   ///< Load cases of the plate.
 };
 
 }  // namespace flexmorph::cases

@@ -25,11 +25,12 @@ struct Drive {
   /// is continued by the parabola of value, rate and acceleration at the nearer end.
   std::function<fem::Motion(double)> motion;
 
-  std::vector<double> kinks;  ///< Times in (0, end] at which the formula changes branches [s].
-  std::string jump;           ///< Text about the first jump of value or rate; empty if none.
+  std::vector<double>
+      discontinuities;  ///< Times in (0, end] at which the formula changes branches [s].
+  std::string jump;     ///< Text about the first jump of value or rate; empty if none.
 
   /// End of the parameter of a coordinate of a curve, which replaces time; absent for a function
-  /// of time. Only `path` joints use such a drive, and its `kinks` are empty.
+  /// of time. Only `path` joints use such a drive, and its `discontinuities` are empty.
   std::optional<double> until;
 
   /// True if inverse kinematics determines the drive from the trajectory (follow_trajectory()).
@@ -37,7 +38,7 @@ struct Drive {
 };
 
 /// The prescribed path of a rigid body. Drives with from = "trajectory" are determined from it.
-struct Trajectory {
+struct TargetTrajectory {
   std::string body;  ///< Name of the rigid body.
   Law x, y, angle;   ///< Position of the origin of the body's axes [m] and their angle [rad].
 };

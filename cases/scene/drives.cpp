@@ -23,43 +23,50 @@ using Constants = std::map<std::string, double>;
 
 const Key& kConstant = io::key("constants", "*")
                            .number(any_number("a constant"))
-                           .says("A number that formulas know by this name.");
-const Key& kName = io::key("drive", "name")
-                       .text("the name of a drive")
-                       .says("What hubs, joints, flows and temperatures call it.");
+                           .description("Constant NAME, which formulas of drives can use.");
+const Key& kName =
+    io::key("drive", "name")
+        .text("the name of a drive")
+        .description(
+            "Name of the drive, by which hubs, joints, flows, loads and temperatures refer to it.");
 const Key& kFormula = io::key("drive", "formula")
                           .text("a formula of the time t")
-                          .otherwise_as("another one of the four is given")
-                          .says(
-                              "Of the time `t`: + - * / ^, pi, sin ... sqrt, abs, min, max, step, "
-                              "smoothstep, piecewise.");
+                          .otherwise_as("required unless `table`, `csv` or `from` is given")
+                          .description(
+                              "Formula of the time `t`: + - * / ^, pi, sin ... sqrt, abs, min, "
+                              "max, step, smoothstep, piecewise.");
 const Key& kTable =
     io::key("drive", "table")
         .rows(any_number("a time or a value"), 2)
-        .otherwise_as("another one of the four is given")
-        .says("Times and values, from 0 to `time.end`; a smooth curve through them.");
+        .otherwise_as("required unless `formula`, `csv` or `from` is given")
+        .description(
+            "Rows of time and value from 0 to `time.end`, which a smooth curve interpolates.");
 const Key& kCsv = io::key("drive", "csv")
-                      .text("a file")
-                      .otherwise_as("another one of the four is given")
-                      .says("A table beside the case.");
+                      .text("a CSV file")
+                      .otherwise_as("required unless `formula`, `table` or `from` is given")
+                      .description("CSV file with times and values, beside the case file.");
 const Key& kTimeColumn = io::key("drive", "time")
-                             .text("a column")
+                             .text("the name of a column")
                              .otherwise("time")
                              .when("`csv` is given")
-                             .says("Its column of times.");
+                             .description("Column of times in the CSV file.");
 const Key& kColumn = io::key("drive", "column")
-                         .text("a column")
+                         .text("the name of a column")
                          .when("`csv` is given")
-                         .says("Its column of values.");
-const Key& kUntil = io::key("drive", "until")
-                        .number(io::positive("the end of a parameter"))
-                        .otherwise_as("it is a function of time")
-                        .when("a coordinate of a curve")
-                        .says("Of a `path`: its variable `t` goes from 0 to this, and is no time.");
+                         .description("Column of values in the CSV file.");
+const Key& kUntil =
+    io::key("drive", "until")
+        .number(io::positive("the end of a parameter"))
+        .otherwise_as("the drive is a function of time")
+        .when("coordinates of the curve of a `path` joint")
+        .description(
+            "End of the parameter `t` of the curve, which begins at 0 and replaces the time.");
 const Key& kFrom = io::key("drive", "from")
-                       .word("a drive follows from", {"trajectory"})
-                       .otherwise_as("another one of the four is given")
-                       .says("What the rigid mechanism needs to follow the [trajectory].");
+                       .word("a source of a drive", {"trajectory"})
+                       .otherwise_as("required unless `formula`, `table` or `csv` is given")
+                       .description(
+                           "The drive is computed from the [trajectory] by inverse kinematics of "
+                           "the rigid mechanism.");
 
 Constants read_constants(const Table& root) {
   Constants out;
@@ -101,9 +108,9 @@ void read_formula(const Table& t, const Constants& constants, double end, Drive&
   try {
     io::Formula formula(drive.words, constants);
     formula.check(end);
-    drive.kinks = formula.kinks(end);
+    drive.discontinuities = formula.discontinuities(end);
     if (const auto jump = formula.first_jump(end))
-      drive.jump = std::string(jump->of_rate ? "its rate" : "it") + " jumps from " +
+      drive.jump = std::string(jump->of_rate ? "the rate" : "the value") + " jumps from " +
                    to_text(jump->before, 4) + " to " + to_text(jump->after, 4) +
                    " at t = " + to_text(jump->time, 6) + " s";
     drive.motion = over_run(std::move(formula), end);
@@ -124,12 +131,12 @@ std::function<fem::Motion(double)> tabulated(const Table& t, const Key& key,
   };
   io::SmoothTable table = make();
   if ((table.first() > 0 || table.last() < end) && t.has(kUntil))
-    t.fail(key, "the table of a curve covers the parameter from 0 to until = " + to_text(end) +
-                    "; this one lasts from " + to_text(table.first()) + " to " +
+    t.fail(key, "the table of a curve must cover the parameter from 0 to until = " + to_text(end) +
+                    "; this table extends from " + to_text(table.first()) + " to " +
                     to_text(table.last()));
   if (table.first() > 0 || table.last() < end)
-    t.fail(key, "a table covers the run from 0 to time.end = " + to_text(end) +
-                    " s; this one lasts from " + to_text(table.first()) + " to " +
+    t.fail(key, "a table must cover the run from 0 to time.end = " + to_text(end) +
+                    " s; this table extends from " + to_text(table.first()) + " to " +
                     to_text(table.last()) + " s");
   return over_run(std::move(table), end);
 }
@@ -177,10 +184,10 @@ Drive read_drive(const Table& t, const Constants& constants, const Scene& scene,
   for (const Drive& other : scene.drives)
     if (other.name == drive.name) t.fail(kName, "there is another drive '" + drive.name + "'");
   if (t.has(kFormula) + t.has(kTable) + t.has(kCsv) + t.has(kFrom) != 1)
-    t.fail("a drive has one of `formula`, `table`, `csv` and `from`");
+    t.fail("a drive needs exactly one of `formula`, `table`, `csv` and `from`");
   if (t.has(kFrom)) {
     t.choice(kFrom);
-    if (!has_trajectory) t.fail(kFrom, "the [trajectory] to follow is missing");
+    if (!has_trajectory) t.fail(kFrom, "the case has no [trajectory]");
     drive.from_trajectory = true;
     drive.words = "from the trajectory";
     return drive;
@@ -192,14 +199,15 @@ Drive read_drive(const Table& t, const Constants& constants, const Scene& scene,
   else
     drive.motion =
         t.has(kTable) ? read_table(t, end, drive.words) : read_csv_drive(t, end, drive.words);
-  if (drive.until) drive.kinks.clear();
+  if (drive.until) drive.discontinuities.clear();
   return drive;
 }
 
 void refuse_curve(const Table& t, const Key& key, const Scene& scene, const std::string& drive) {
   for (const Drive& each : scene.drives)
     if (each.name == drive && each.until)
-      t.fail(key, "the drive '" + drive + "' is a coordinate of a curve (`until`), not of time");
+      t.fail(key, "the drive '" + drive +
+                      "' is a coordinate of a curve (`until`), not a function of time");
 }
 
 /// Returns the value at the point between a and b where the rate changes its sign, by bisection.
@@ -250,8 +258,9 @@ void refuse_jumps(const Table& t, const Key& key, const Scene& scene, const std:
   refuse_curve(t, key, scene, drive);
   for (const Drive& each : scene.drives)
     if (each.name == drive && !each.jump.empty())
-      t.fail(key, "of the drive '" + drive + "', " + each.jump +
-                      ": what moves is continuous with its rate, only its acceleration may jump");
+      t.fail(key, "in the drive '" + drive + "' " + each.jump +
+                      "; a prescribed motion has a continuous value and rate, only its "
+                      "acceleration may jump");
 }
 
 void read_drives(const Table& root, Scene& scene) {
@@ -282,18 +291,21 @@ void follow_length(const Table& body_table, const Scene& scene, Body& body) {
     flow.motion = scene.motion_of(flow.length);
     const double start = flow.motion(0).value;
     if (body.length == 0) body.length = start;
-    body_table.settle(body_keys::kLength, body.length);
+    body_table.record(body_keys::kLength, body.length);
     if (std::abs(start - body.length) > 1e-9)
-      t.fail(flow_keys::kLength, "this drive starts at " + to_text(start) + ", '" + body.name +
-                                     "' at length = " + to_text(body.length) + " [m]");
+      t.fail(flow_keys::kLength, "this drive starts at " + to_text(start) + " m, but '" +
+                                     body.name + "' has length = " + to_text(body.length) +
+                                     " m at the start");
     const std::array<double, 2> range = range_of(flow.motion, scene.time.end);
     flow.shortest = range[0];
     flow.longest = range[1];
   }
   const double leaves = body.longest(scene.time.end) - body.length;
-  if (flow.stored_length && *flow.stored_length < leaves * (1 - 1e-9))
-    t.fail(flow_keys::kStoredLength, "the material runs out: " + to_text(leaves, 4) +
-                                         " m leave until the body is longest [m]");
+  if (flow.reservoir_length && *flow.reservoir_length < leaves * (1 - 1e-9))
+    t.fail(flow_keys::kReservoirLength,
+           "the reservoir runs empty: " + to_text(leaves, 4) +
+               " m of material leave it until the body is longest, therefore the reservoir "
+               "contains at least this length [m]");
 }
 
 }  // namespace flexmorph::cases

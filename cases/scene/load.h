@@ -6,7 +6,7 @@
 #include <string>
 
 #include "fem/dynamics/esl.h"
-#include "fem/link.h"
+#include "fem/force_element.h"
 #include "fem/load_law.h"
 #include "fem/term.h"
 #include "geometry/base.h"
@@ -49,7 +49,8 @@ struct LoadRow {
   /// Creates the term of a loaded plate or beam.
   std::unique_ptr<fem::Term> (*make)(const BodyLoad& load, const Body& body);
   /// Creates the force element of a loaded rigid body; null if the load does not act on them.
-  std::unique_ptr<fem::Link> (*on_rigid)(const BodyLoad& load, const std::string& name) = nullptr;
+  std::unique_ptr<fem::ForceElement> (*on_rigid)(const BodyLoad& load,
+                                                 const std::string& name) = nullptr;
   /// Returns the force that equivalent static loads contain for a load that does not turn with the
   /// body: a force at a point or along the free end. Returns nothing if equivalent static loads do
   /// not include such a load; null means that they never do.

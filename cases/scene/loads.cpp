@@ -15,13 +15,13 @@ using io::Table;
 
 using Attached = std::optional<fem::AttachedForce>;
 
-constexpr const char* kOnBodies = "on bodies";
+constexpr const char* kOnBodies = "loads on bodies";
 
-const io::Key& force_key(const char* unit, const char* condition) {
+const io::Key& force_key(const char* unit, const char* condition, const char* sentence) {
   return io::key("load", "force")
       .numbers_or_names(any_number("a force", unit), "a drive", 2, 3)
       .when(condition)
-      .says("Along the axes of the world; three entries in space.");
+      .description(sentence);
 }
 
 const io::Key& size_key(const char* name, const char* condition, io::Quantity quantity,
@@ -30,18 +30,18 @@ const io::Key& size_key(const char* name, const char* condition, io::Quantity qu
       .number(std::move(quantity))
       .name_of("a drive")
       .when(condition)
-      .says(sentence);
+      .description(sentence);
 }
-
-constexpr const char* kWithPlate = "Turns with the plate, in space.";
 
 const LoadRow kPointForce = {
     .name = "point",
-    .sentence = "A force at a material point, or at a point of a rigid body.",
+    .sentence = "A force at a material point of a plate or beam, or at a point of a rigid body.",
     .words = "force at a point",
     .at_point = true,
     .on_beams = true,
-    .key = force_key("N", "point"),
+    .key =
+        force_key("N", "`type = \"point\"`",
+                  "Components of the force along the axes of the world; in space there are three."),
     .make =
         [](const BodyLoad& l, const Body&) {
           return l.turns ? fem::make_turning_point_force(l.point, l.law)
@@ -57,10 +57,12 @@ const LoadRow kPointForce = {
 
 const LoadRow kEdgeForce = {
     .name = "edge",
-    .sentence = "A force per length along an edge.",
+    .sentence = "A force per length along an edge of a plate.",
     .words = "force along",
     .at_edge = true,
-    .key = force_key("N/m", "edge"),
+    .key = force_key("N/m", "`type = \"edge\"`",
+                     "Components of the force per length along the axes of the world; in space "
+                     "there are three."),
     .make =
         [](const BodyLoad& l, const Body&) {
           return l.turns ? fem::make_turning_edge_load(l.edge, l.law)
@@ -72,38 +74,42 @@ const LoadRow kEdgeForce = {
       return fem::AttachedForce{{longest, 0}, true, body.width * force.head<2>(), 0};
     }};
 
-const LoadRow kSurfaceForce = {.name = "surface",
-                               .sentence = "A force per area.",
-                               .words = "force per area",
-                               .key = force_key("N/m^2", "surface"),
-                               .make = [](const BodyLoad& l, const Body&) {
-                                 return l.turns ? fem::make_turning_surface_load(l.law)
-                                                : fem::make_surface_load(l.law);
-                               }};
+const LoadRow kSurfaceForce = {
+    .name = "surface",
+    .sentence = "A force per area of a plate.",
+    .words = "force per area",
+    .key = force_key(
+        "N/m^2", "`type = \"surface\"`",
+        "Components of the force per area along the axes of the world; in space there are three."),
+    .make = [](const BodyLoad& l, const Body&) {
+      return l.turns ? fem::make_turning_surface_load(l.law) : fem::make_surface_load(l.law);
+    }};
 
 /// The force per length is spread over the height of the beam, so that its resultant is on the
 /// axis.
-const LoadRow kLineForce = {.name = "line",
-                            .sentence = "A force per length along all of a beam.",
-                            .words = "force per length",
-                            .on_plates = false,
-                            .on_beams = true,
-                            .key = force_key("N/m", "line"),
-                            .make = [](const BodyLoad& l, const Body& beam) {
-                              const fem::LoadLaw spread = l.law.times(1 / beam.width);
-                              return l.turns ? fem::make_turning_surface_load(spread)
-                                             : fem::make_surface_load(spread);
-                            }};
+const LoadRow kLineForce = {
+    .name = "line",
+    .sentence = "A force per length along the whole beam.",
+    .words = "force per length",
+    .on_plates = false,
+    .on_beams = true,
+    .key = force_key("N/m", "`type = \"line\"`",
+                     "Components of the force per length of the beam along the axes of the world."),
+    .make = [](const BodyLoad& l, const Body& beam) {
+      const fem::LoadLaw spread = l.law.times(1 / beam.width);
+      return l.turns ? fem::make_turning_surface_load(spread) : fem::make_surface_load(spread);
+    }};
 
 const LoadRow kTorque = {
     .name = "torque",
-    .sentence = "A moment on a rigid body, or on the line across a body in the plane.",
+    .sentence = "A moment on a rigid body, or on a cross-section of a plate or beam in the plane.",
     .words = "torque",
     .at_point = true,
     .follows = true,
     .in_plane = true,
     .on_beams = true,
-    .key = size_key("torque", "torque", any_number("a torque", "N m"), "Counter-clockwise."),
+    .key = size_key("torque", "`type = \"torque\"`", any_number("a torque", "N m"),
+                    "Moment, positive counterclockwise."),
     .make = [](const BodyLoad& l, const Body&) { return fem::make_moment(l.point, l.law); },
     .on_rigid =
         [](const BodyLoad& l, const std::string& name) {
@@ -112,21 +118,23 @@ const LoadRow kTorque = {
 
 const LoadRow kPressure = {
     .name = "pressure",
-    .sentence = "A pressure across the surface of a plate in space.",
+    .sentence = "A pressure normal to the surface of a plate in space.",
     .words = "pressure",
     .follows = true,
     .in_space = true,
-    .key = size_key("pressure", "pressure", any_number("a pressure", "N/m^2"), kWithPlate),
+    .key = size_key("pressure", "`type = \"pressure\"`", any_number("a pressure", "N/m^2"),
+                    "Pressure normal to the surface of the plate; it turns with the plate."),
     .make = [](const BodyLoad& l, const Body&) { return fem::make_pressure(l.law); }};
 
 const LoadRow kEdgeMoment = {
     .name = "edge_moment",
-    .sentence = "A moment per length of an edge of a plate in space, about the edge.",
+    .sentence = "A moment per length about an edge of a plate in space.",
     .words = "moment at",
     .at_edge = true,
     .follows = true,
     .in_space = true,
-    .key = size_key("moment", "moment", any_number("a moment per length", "N"), kWithPlate),
+    .key = size_key("moment", "`type = \"edge_moment\"`", any_number("a moment per length", "N"),
+                    "Moment per length about the edge; it turns with the plate."),
     .make = [](const BodyLoad& l, const Body&) { return fem::make_edge_moment(l.edge, l.law); }};
 
 const io::Key& kType = io::key("load", "type")
@@ -138,24 +146,27 @@ const io::Key& kType = io::key("load", "type")
                                    return rows;
                                  })
                            .when(kOnBodies)
-                           .says("Its kind.");
+                           .description("Kind of the load.");
 const io::Key& kBody =
-    io::key("load", "body").name_of("a body").when(kOnBodies).says("The loaded body.");
+    io::key("load", "body").name_of("a body").when(kOnBodies).description("Body that is loaded.");
 const io::Key& kPoint =
     io::key("load", "point")
         .numbers(any_number("a material coordinate", "m"), 2, 2)
-        .otherwise_as("[0, 0] of a rigid body")
-        .when("point, torque")
-        .says("Where: a material point, or a place in the axes of a rigid body.");
-const io::Key& kTurns = io::key("load", "turns")
-                            .boolean()
-                            .otherwise(false)
-                            .when("forces")
-                            .says("Its entries are along axes that turn with the body.");
+        .otherwise_as("[0, 0] on a rigid body; required on a plate or beam")
+        .when("`type` is \"point\" or \"torque\"")
+        .description("Loaded point: a material point, or a location in the axes of a rigid body.");
+const io::Key& kTurns =
+    io::key("load", "turns")
+        .boolean()
+        .otherwise(false)
+        .when("loads that are forces")
+        .description("True if the components of the force refer to axes that turn with the body.");
 const io::Key& kEdge = io::key("load", "edge")
                            .text("an edge")
-                           .when("edge, edge_moment")
-                           .says("An edge, or an m-line of a mesh that stays: `line 3`.");
+                           .when("`type` is \"edge\" or \"edge_moment\"")
+                           .description(
+                               "Loaded edge, or a line across the axis of a mesh that does not "
+                               "change, such as `line 3`.");
 
 /// Reads the name of the loaded body. Returns true for a rigid body, which only some kinds of loads
 /// accept.
@@ -172,10 +183,10 @@ bool is_on_rigid_body(const Table& t, const Scene& scene, BodyLoad& load) {
 void check_body(const Table& t, const LoadRow& row, const Body& body) {
   const bool is_beam = !body.row->spreads;
   if (is_beam ? !row.on_beams : !row.on_plates)
-    t.fail(kType, is_beam ? "a beam is loaded by \"point\", \"line\" or \"torque\""
-                          : "this load acts on a beam");
-  if (row.in_space && !body.in_space()) t.fail(kType, "this load acts on a plate in space");
-  if (row.in_plane && body.in_space()) t.fail(kType, "this load acts in the plane");
+    t.fail(kType, is_beam ? "the load of a beam is \"point\", \"line\" or \"torque\""
+                          : "this load acts on beams only");
+  if (row.in_space && !body.in_space()) t.fail(kType, "this load acts on plates in space only");
+  if (row.in_plane && body.in_space()) t.fail(kType, "this load acts on bodies in the plane only");
 }
 
 BodyLoad read_load(const Table& t, const Scene& scene) {
@@ -187,7 +198,7 @@ BodyLoad read_load(const Table& t, const Scene& scene) {
   int dim = 2;
   if (is_on_rigid_body(t, scene, load)) {
     load.point = t.has(kPoint) ? read_pair(t, kPoint) : Vec2(0, 0);
-    if (row.follows && t.has(kPoint)) t.fail(kPoint, "a torque turns all of a rigid body");
+    if (row.follows && t.has(kPoint)) t.fail(kPoint, "a torque on a rigid body has no `point`");
   } else {
     const Body& body = scene.body(load.body);
     dim = body.dim();
@@ -205,7 +216,7 @@ BodyLoad read_load(const Table& t, const Scene& scene) {
     load.turns = t.boolean(kTurns);
   }
   if ((row.follows || load.turns) && scene.time.integrator == "energy_momentum")
-    t.fail(kType, "a load that follows the body needs integrator = \"generalized_alpha\"");
+    t.fail(kType, "a load that turns with the body needs time.integrator = \"generalized_alpha\"");
   return load;
 }
 

@@ -26,9 +26,9 @@ const std::map<std::string, std::vector<MeasuredColumn>>& all_quantities() {
        {{"end_rx", "-", "length of the position gradient along the axis at the free end"},
         {"end_ry", "-", "length of the position gradient across the axis at the free end"}}},
       {"free_expansion",
-       {{"free_ux", "m", "closed form: displacement along x of the end of the free body"},
-        {"free_uy", "m", "closed form: displacement along y of the end of the free body"},
-        {"free_kinetic", "J", "closed form: kinetic energy of the free body"}}}};
+       {{"free_ux", "m", "displacement along x of the end of an unconstrained body (closed form)"},
+        {"free_uy", "m", "displacement along y of the end of an unconstrained body (closed form)"},
+        {"free_kinetic", "J", "kinetic energy of an unconstrained body (closed form)"}}}};
   return kColumns;
 }
 
@@ -48,13 +48,13 @@ const std::vector<MeasuredColumn>& columns_of_quantity(const std::string& quanti
 }
 
 std::string refusal_of_measure(const Scene& scene, const Body& body, const std::string& quantity) {
-  if (body.flow || body.has_free_lines() || body.mesh_changes())
-    return "bodies are measured whose material does not flow and whose lines are not free";
+  if (body.flow || body.has_eulerian_lines() || body.mesh_changes())
+    return "a measured body has no material flow and no free lines";
   if (body.in_space() && quantity != "temperature" && quantity != "max_elastic_strain")
-    return "this is measured of bodies in the plane";
+    return "this quantity is defined for bodies in the plane only";
   const bool hot = quantity == "temperature" || quantity == "free_expansion";
   if (hot && !body.heat) return "'" + body.name + "' has no [body.heat]";
-  if (scene.statics && quantity == "end_velocity") return "nothing moves in a [static] analysis";
+  if (scene.statics && quantity == "end_velocity") return "a [static] analysis has no velocities";
   return "";
 }
 

@@ -22,7 +22,8 @@ namespace flexmorph::cases {
 ///                      axis
 /// end_velocity         end_vx, end_vy [m/s]: velocity of the free end
 /// end_slopes           end_rx, end_ry [-]: |∂r/∂X|, |∂r/∂Y| at the free end
-/// free_expansion       free_ux, free_uy [m], free_kinetic [J]: values of an identical body that is
+/// free_expansion       free_ux, free_uy [m], free_kinetic [J]: values of an identical body
+/// that is
 ///                      free, unstressed and not turned: displacement α ΔT (X - X_c) of the free
 ///                      end relative to the centre of mass, and kinetic energy
 ///                      (α Ṫ)² ½ ∫ ρ |X - X_c|² dV; T (12), (19)

@@ -6,13 +6,13 @@
 namespace flexmorph::cases {
 
 /// Determines how the mesh of a body follows its changing length, and its number of elements. If
-/// the case does not give `mesh`, the mesh stays uniform ("even") where the length changes by less
-/// than a factor of four, no element becomes shorter than min_length, and no load, spring, joint or
-/// mass acts inside of the body, where moving lines would pass it; otherwise lines are inserted and
-/// removed ("split").
+/// the case does not give `mesh`, the mesh stays uniform ("uniform") where the length changes by
+/// less than a factor of four, no element becomes shorter than min_length, and no load, spring,
+/// joint or mass acts inside of the body, where moving lines would pass it; otherwise lines are
+/// inserted and removed ("split").
 /// @param body_table  [[body]], with a [body.flow]
 /// @param scene       with all of the motion read
 /// @throws Error (input) for limits that the mesh cannot keep.
-void settle_mesh(const io::Table& body_table, const Scene& scene, Body& body);
+void choose_mesh(const io::Table& body_table, const Scene& scene, Body& body);
 
 }  // namespace flexmorph::cases

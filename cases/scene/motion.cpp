@@ -21,46 +21,56 @@ using io::positive;
 using io::Table;
 using io::to_text;
 
-constexpr int kMostElements = 100'000;
+constexpr int kMaxElements = 100'000;
 
-const io::Key& kEnd =
-    io::key("time", "end").number(positive("an end time", "s")).says("When the run ends, from 0.");
+const io::Key& kEnd = io::key("time", "end")
+                          .number(positive("an end time", "s"))
+                          .description("End time of the run, which begins at 0.");
 const io::Key& kIntegrator =
     io::key("time", "integrator")
         .word("an integrator", {"generalized_alpha", "energy_momentum", "minimal_coordinates"})
         .otherwise("generalized_alpha")
-        .says("Steps through time; `minimal_coordinates`, for rigid and soft scenes, is explicit.");
-const io::Key& kStep = io::key("time", "step")
-                           .number(positive("a time step", "s"))
-                           .word("a time step in words", {"adaptive"})
-                           .otherwise_as("0.001, or `end` if that is less")
-                           .says("The time step; `adaptive` steps follow an estimate of errors.");
+        .description(
+            "Time integrator; an explicit one is `minimal_coordinates`, for rigid scenes or low "
+            "stiffness.");
+const io::Key& kStep =
+    io::key("time", "step")
+        .number(positive("a time step", "s"))
+        .word("a time step in words", {"adaptive"})
+        .otherwise_as("0.001, or `end` if `end` is smaller")
+        .description(
+            "Time step; `adaptive` chooses every step from an estimate of the local error.");
 const io::Key& kTolerance =
     io::key("time", "tolerance")
         .number({.noun = "a tolerance", .lower = 0, .upper = 0.1, .lower_open = true})
         .otherwise(fem::AdaptiveStep{}.tolerance)
         .when("`step = \"adaptive\"`")
-        .says("About the error per radian of a motion, in parts of the model's size.");
-const io::Key& kExplicitTolerance = io::key("time", "tolerance")
-                                        .number(between("a tolerance", "", 1e-13, 0.1))
-                                        .otherwise(TimeSpan().explicit_tolerance)
-                                        .when("`integrator = \"minimal_coordinates\"`")
-                                        .says("Of the local errors of its steps.");
+        .description(
+            "Approximate error per radian of the motion, relative to the size of the model.");
+const io::Key& kExplicitTolerance =
+    io::key("time", "tolerance")
+        .number(between("a tolerance", "", 1e-13, 0.1))
+        .otherwise(TimeSpan().explicit_tolerance)
+        .when("`integrator = \"minimal_coordinates\"`")
+        .description("Tolerance of the local errors of the integrator `minimal_coordinates`.");
 const io::Key& kLargestStep = io::key("time", "largest_step")
                                   .number(positive("a time step", "s"))
-                                  .otherwise_as("a fiftieth of `end`")
+                                  .otherwise_as("`end` / 50")
                                   .when("`step = \"adaptive\"`")
-                                  .says("No step is longer.");
-const io::Key& kRhoInf =
-    io::key("time", "rho_inf")
-        .number(between("a spectral radius", "", 0, 1))
-        .otherwise(0.8)
-        .says("Spectral radius of generalized-alpha at infinite frequency: 1 damps nothing.");
+                                  .description("Largest adaptive time step.");
+const io::Key& kRhoInf = io::key("time", "rho_inf")
+                             .number(between("a spectral radius", "", 0, 1))
+                             .otherwise(0.8)
+                             .description(
+                                 "Spectral radius of generalized-alpha at infinite frequency; 1 "
+                                 "has no numerical damping.");
 const io::Choice<Start> kStart(
     io::key("time", "start")
-        .otherwise_as("`automatic`; `rigid` without a hub, with free lines or where nothing bends")
-        .says("`automatic`: equilibrium at rest where nothing moves at the start, else `steady`."),
-    "a start",
+        .otherwise_as(
+            "`automatic`; `rigid` without hubs, with free lines or without flexible bodies")
+        .description("Initial state; `automatic`: static equilibrium if all start velocities are "
+                     "0, else `steady`."),
+    "an initial state",
     {{"automatic", Start::automatic},
      {"prestretched", Start::prestretched},
      {"steady", Start::steady},
@@ -68,9 +78,9 @@ const io::Choice<Start> kStart(
      {"hub_at_rest", Start::hub_at_rest}});
 const io::Key& kSpinUp = io::key("time", "spin_up")
                              .number(positive("a spin-up", "s"))
-                             .otherwise_as("a fifth of `end`")
+                             .otherwise_as("`end` / 5")
                              .when("`start = \"hub_at_rest\"`")
-                             .says("How long hubs take to their angular velocity.");
+                             .description("Time in which hubs reach their angular velocity.");
 
 /// Reads the time step: a number, or "adaptive" with its tolerance and its largest step. The
 /// integrator must be read before.
@@ -79,26 +89,29 @@ void read_step(const Table& t, TimeSpan& time) {
   if (t.is_string(kStep)) {
     t.choice(kStep);
     if (time.integrator != "generalized_alpha")
-      t.fail(kStep, "only \"generalized_alpha\" knows its local error, which \"adaptive\" needs");
+      t.fail(kStep,
+             "adaptive steps need integrator = \"generalized_alpha\", because only it estimates "
+             "its local error");
     time.tolerance = t.number(kTolerance);
     if (!t.has(kLargestStep)) return;
     time.largest_step = t.number(kLargestStep);
-    if (time.largest_step > time.end)
-      t.fail(kLargestStep, "a time step is no longer than time.end [s]");
+    if (time.largest_step > time.end) t.fail(kLargestStep, "a time step is at most time.end [s]");
     return;
   }
-  if (t.has(kLargestStep)) t.fail(kLargestStep, "only step = \"adaptive\" has one");
+  if (t.has(kLargestStep)) t.fail(kLargestStep, "this key needs step = \"adaptive\"");
   if (time.integrator == "minimal_coordinates")
     time.explicit_tolerance = t.number(kExplicitTolerance);
   else if (t.has(kTolerance))
-    t.fail(kTolerance, "only step = \"adaptive\" and \"minimal_coordinates\" have one");
+    t.fail(kTolerance,
+           "this key needs step = \"adaptive\" or integrator = \"minimal_coordinates\"");
   time.step = t.number(kStep, time.step);
-  if (time.step > time.end) t.fail(kStep, "a time step is no longer than time.end [s]");
+  if (time.step > time.end) t.fail(kStep, "a time step is at most time.end [s]");
   // Checked here and not with the resource estimate, because drives are evaluated over the whole
   // time span before.
-  if (const double steps = time.end / time.step; steps > kMostSteps)
-    t.fail(t.has(kStep) ? kStep : kEnd,
-           io::to_text(steps, 3) + " steps; the most are " + io::to_text(kMostSteps, 3));
+  if (const double steps = time.end / time.step; steps > kMaxSteps)
+    t.fail(t.has(kStep) ? kStep : kEnd, io::to_text(steps, 3) +
+                                            " steps are needed; the largest number of steps is " +
+                                            io::to_text(kMaxSteps, 3));
 }
 
 TimeSpan read_time(const Table& t) {
@@ -111,34 +124,36 @@ TimeSpan read_time(const Table& t) {
   if (time.start == Start::hub_at_rest)
     time.spin_up = t.number(kSpinUp.within(0, time.end), 0.2 * time.end);
   else if (t.has(kSpinUp))
-    t.fail(kSpinUp, "only start = \"hub_at_rest\" spins up");
+    t.fail(kSpinUp, "this key needs start = \"hub_at_rest\"");
   return time;
 }
 
 const io::Key& kHubName =
-    io::key("hub", "name").text("the name of a hub").says("What joints call it.");
+    io::key("hub", "name").text("the name of a hub").description("Name of the hub in joints.");
 const io::Key& kHubPosition =
     io::key("hub", "position")
         .numbers(any_number("a position", "m"), 2, 2)
         .names_of("a drive", 2, 2)
         .otherwise(std::vector<double>{0, 0})
-        .says("Where it is: x and y, or the names of the drives of both.");
-const io::Key& kHubAngle = io::key("hub", "angle")
-                               .number(any_number("an angle", "rad"))
-                               .name_of("a drive")
-                               .otherwise(0.0)
-                               .says("Its angle at the start, or the drive of its angle.");
-const io::Key& kAngularVelocity = io::key("hub", "angular_velocity")
-                                      .number(any_number("an angular velocity", "rad/s"))
-                                      .otherwise_as("`angle` is a drive, or the analysis [static]")
-                                      .says("How fast it turns.");
+        .description("Position of the hub: x and y, or the names of the drives of both.");
+const io::Key& kHubAngle =
+    io::key("hub", "angle")
+        .number(any_number("an angle", "rad"))
+        .name_of("a drive")
+        .otherwise(0.0)
+        .description("Angle of the hub at the start, or the drive of its angle.");
+const io::Key& kAngularVelocity =
+    io::key("hub", "angular_velocity")
+        .number(any_number("an angular velocity", "rad/s"))
+        .otherwise_as("required, except with a drive `angle` or a [static] analysis")
+        .description("Constant angular velocity of the hub.");
 
 /// Throws if a hub is driven and spun up at the same time, because a drive prescribes the start.
 void refuse_spin_up(const Table& t, const Key& key, const Scene& scene) {
   if (scene.time.start == Start::hub_at_rest)
     t.fail(key,
-           "time.start = \"hub_at_rest\" spins up hubs that turn at a constant rate, not "
-           "driven ones");
+           "a driven hub cannot be used with time.start = \"hub_at_rest\", which spins up hubs of "
+           "constant angular velocity");
 }
 
 /// Reads the position of a hub: two numbers, or the names of two drives.
@@ -166,29 +181,34 @@ Hub read_hub(const Table& t, const Scene& scene) {
     hub.turn = read_law(t, kHubAngle, scene);
     hub.angle = scene.motion_of(hub.turn)(0).value;
     if (t.has(kAngularVelocity))
-      t.fail(kAngularVelocity, "the drive of `angle` says how the hub turns");
+      t.fail(kAngularVelocity, "the drive of `angle` determines the angular velocity of the hub");
     return hub;
   }
   hub.angle = t.number(kHubAngle);
   const std::optional<double> rest = scene.statics ? std::optional<double>(0) : std::nullopt;
   hub.angular_velocity = t.number(kAngularVelocity, rest);
   if (scene.statics && hub.angular_velocity != 0)
-    t.fail(kAngularVelocity, "in a [static] analysis hubs rest");
+    t.fail(kAngularVelocity, "in a [static] analysis the angular velocity of a hub is 0");
   return hub;
 }
 
-const io::Key& kBodyPosition =
-    io::key("body", "position")
-        .numbers(any_number("a position", "m"), 2, 2)
-        .otherwise_as("as its joints say")
-        .says("Of the middle of its root at the start; a guess where joints say more.");
-const io::Key& kBodyAngle = io::key("body", "angle")
-                                .number(any_number("an angle", "rad"))
-                                .otherwise(0.0)
-                                .when("`position` is given")
-                                .says("Of its axis at the start, likewise.");
-const io::Key& kHeat =
-    io::key("body", "heat").table().otherwise_as("the body is cold").says("Its temperature.");
+const io::Key& kBodyPosition = io::key("body", "position")
+                                   .numbers(any_number("a position", "m"), 2, 2)
+                                   .otherwise_as("the position that joints determine")
+                                   .description(
+                                       "Position of the middle of the root at the start; an "
+                                       "initial guess if joints determine it.");
+const io::Key& kBodyAngle =
+    io::key("body", "angle")
+        .number(any_number("an angle", "rad"))
+        .otherwise(0.0)
+        .when("`position` is given")
+        .description(
+            "Angle of the body's axis at the start; an initial guess if joints determine it.");
+const io::Key& kHeat = io::key("body", "heat")
+                           .table()
+                           .otherwise_as("no temperature rise")
+                           .description("Temperature rise of the body.");
 
 Body read_body(const Table& t, const Scene& scene, bool has_gravity) {
   Body body;
@@ -205,18 +225,23 @@ Body read_body(const Table& t, const Scene& scene, bool has_gravity) {
   return body;
 }
 
-const io::Key& kMassBody = io::key("point_mass", "body").name_of("a body").says("What carries it.");
-const io::Key& kMassAt = io::key("point_mass", "at")
-                             .word("the place of a point mass", {"free_end"})
-                             .otherwise_as("`point` is given")
-                             .says("Where: the middle of the free end.");
-const io::Key& kMassPoint =
-    io::key("point_mass", "point")
-        .numbers(any_number("a coordinate", "m"), 2, 2)
-        .otherwise_as("`at` is given")
-        .says("Or a material point, or a place in the axes of a rigid body.");
-const io::Key& kMass =
-    io::key("point_mass", "mass").number(positive("a mass", "kg")).says("Its mass.");
+const io::Key& kMassBody = io::key("point_mass", "body")
+                               .name_of("a body")
+                               .description("Body that carries the point mass.");
+const io::Key& kMassAt =
+    io::key("point_mass", "at")
+        .word("the location of a point mass", {"free_end"})
+        .otherwise_as("required unless `point` is given")
+        .description("Location of the point mass: the middle of the free end.");
+const io::Key& kMassPoint = io::key("point_mass", "point")
+                                .numbers(any_number("a coordinate", "m"), 2, 2)
+                                .otherwise_as("required unless `at` is given")
+                                .description(
+                                    "Location of the point mass: a material point, or a point in "
+                                    "the axes of a rigid body.");
+const io::Key& kMass = io::key("point_mass", "mass")
+                           .number(positive("a mass", "kg"))
+                           .description("Mass of the point mass.");
 
 void read_point_mass(const Table& t, Scene& scene) {
   for (RigidBody& body : scene.rigid_bodies) {
@@ -229,7 +254,7 @@ void read_point_mass(const Table& t, Scene& scene) {
   mass.body = read_flexible(t, kMassBody, scene);
   const Body& body = scene.body(mass.body);
   if (t.has(kMassAt) == t.has(kMassPoint))
-    t.fail("a point mass is `at` the \"free_end\" or at a `point`");
+    t.fail("a point mass needs either at = \"free_end\" or a `point`");
   mass.at_end = t.has(kMassAt);
   if (mass.at_end) {
     t.choice(kMassAt);
@@ -256,32 +281,32 @@ void read_span(const Table& root, Scene& scene) {
 }
 
 /// Checks that the initial state suits the scene, and determines it where the case leaves it open.
-void settle_start(const Table& root, Scene& scene) {
+void choose_start(const Table& root, Scene& scene) {
   const Table time = root.table(tables::kTime);
   if (scene.is_mechanism() && scene.time.start == Start::hub_at_rest)
+    time.fail(kStart,
+              "\"hub_at_rest\" spins up hubs; in a scene with rigid bodies, or with bodies welded "
+              "to each other, the drives determine the start");
+  if (scene.time.start == Start::steady && scene.has_eulerian_lines())
+    time.fail(kStart, "\"steady\" cannot be used with free material lines; use start = \"rigid\"");
+  if (scene.time.start == Start::prestretched && scene.bodies.empty())
     time.fail(
         kStart,
-        "\"hub_at_rest\" spins up hubs; the drives of a scene with rigid bodies, or with bodies "
-        "welded to each other, say themselves how they start");
-  if (scene.time.start == Start::steady && scene.has_free_lines())
-    time.fail(kStart, "\"steady\" is for bodies whose lines are not free: start = \"rigid\"");
-  if (scene.time.start == Start::prestretched && scene.bodies.empty())
-    time.fail(kStart,
-              "\"prestretched\" stretches bodies that bend, of which the scene has none; "
-              "\"steady\" starts springs and rigid bodies in equilibrium, \"rigid\" where they "
-              "are put");
-  if (scene.time.integrator != "generalized_alpha" && scene.has_free_lines())
-    time.fail(kIntegrator, "free material lines ([[body.line]]) need \"generalized_alpha\": \"" +
-                               scene.time.integrator + "\" does not know them");
+        "\"prestretched\" needs flexible bodies, and the scene has none; \"steady\" starts springs "
+        "and rigid bodies in equilibrium, \"rigid\" starts them at the given positions");
+  if (scene.time.integrator != "generalized_alpha" && scene.has_eulerian_lines())
+    time.fail(kIntegrator,
+              "free material lines ([[body.line]]) need integrator = \"generalized_alpha\"; \"" +
+                  scene.time.integrator + "\" does not support them");
   // Without a hub no prescribed rotation stretches the bodies, and a free line starts at its given
   // location.
-  const bool in_hubs = !scene.hubs.empty() && !scene.has_free_lines();
+  const bool in_hubs = !scene.hubs.empty() && !scene.has_eulerian_lines();
   if (!scene.is_mechanism() && !in_hubs && scene.time.start == Start::prestretched)
-    time.fail(kStart, "\"prestretched\" is for bodies in hubs whose lines are not free");
+    time.fail(kStart, "\"prestretched\" needs bodies in hubs, without free material lines");
   const bool unstrained = scene.bodies.empty() || (!scene.is_mechanism() && !in_hubs);
   if (unstrained && scene.time.start == Start::automatic) {
     scene.time.start = Start::rigid;
-    time.settle(kStart, "rigid");
+    time.record(kStart, "rigid");
   }
 }
 
@@ -294,15 +319,16 @@ void read_motion(const Table& root, const Follow& follow, Scene& scene) {
   read_rigid_bodies(root, scene);
   const std::vector<Table> bodies = root.tables(tables::kBody);
   if (bodies.empty() && !scene.is_mechanism())
-    root.fail(tables::kBody, "a scene has one or more [[body]]");
+    root.fail(tables::kBody, "a scene needs one or more [[body]]");
   for (const Table& t : bodies)
     scene.bodies.push_back(read_body(t, scene, root.has(tables::kGravity)));
   if (root.has(tables::kGravity)) {
     scene.gravity_laws =
         read_load_laws(root, tables::kGravity.counted(scene.in_space() ? 3 : 2), scene);
     scene.gravity = scene.gravity_law().now();
-    if (scene.gravity_law().varies() && scene.has_free_lines())
-      root.fail(tables::kGravity, "gravity that varies needs bodies without free lines");
+    if (scene.gravity_law().varies() && scene.has_eulerian_lines())
+      root.fail(tables::kGravity,
+                "gravity that varies with time cannot be used with free material lines");
   }
   const auto follow_lengths = [&](bool trajectory) {
     for (size_t i = 0; i < bodies.size(); ++i)
@@ -321,11 +347,11 @@ void read_motion(const Table& root, const Follow& follow, Scene& scene) {
   read_observed(root, scene);
   read_measures(root, scene);
   for (size_t i = 0; i < bodies.size(); ++i)
-    if (scene.bodies[i].flow) settle_mesh(bodies[i], scene, scene.bodies[i]);
+    if (scene.bodies[i].flow) choose_mesh(bodies[i], scene, scene.bodies[i]);
   if (scene.statics)
     read_growing(root, scene);
   else
-    settle_start(root, scene);
+    choose_start(root, scene);
 }
 
 }  // namespace flexmorph::cases

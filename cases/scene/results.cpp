@@ -9,23 +9,28 @@ namespace flexmorph::cases {
 namespace {
 
 using io::Table;
-const io::Key& kName = io::key("observe", "name")
-                           .text("the name of an observed point")
-                           .says("Its columns are `BODY.NAME_x` and so on.");
-const io::Key& kBody = io::key("observe", "body").name_of("a body").says("Whose point it is.");
+const io::Key& kName =
+    io::key("observe", "name")
+        .text("the name of an observed point")
+        .description("Name of the observed point. Its columns are `BODY.NAME_x` and so on.");
+const io::Key& kBody =
+    io::key("observe", "body").name_of("a body").description("Body of the observed point.");
 const io::Key& kPoint = io::key("observe", "point")
                             .numbers(io::any_number("a material coordinate", "m"), 2, 2)
-                            .otherwise_as("`at` is given")
-                            .says("The material point.");
-const io::Key& kAt = io::key("observe", "at")
-                         .word("a place", {"free_end"})
-                         .otherwise_as("`point` is given")
-                         .says("Or the middle of the free end.");
+                            .otherwise_as("required unless `at` is given")
+                            .description("Material point that is observed.");
+const io::Key& kAt =
+    io::key("observe", "at")
+        .word("a location", {"free_end"})
+        .otherwise_as("required unless `point` is given")
+        .description("Location of the observed point: the middle of the free end.");
 
-const io::Key& kMeasured = io::key("measure", "body").name_of("a body").says("The measured body.");
-const io::Key& kQuantities = io::key("measure", "quantities")
-                                 .words("a measured quantity", measured_quantities)
-                                 .says("What is written of it, as columns `BODY.QUANTITY`.");
+const io::Key& kMeasured =
+    io::key("measure", "body").name_of("a body").description("Body that is measured.");
+const io::Key& kQuantities =
+    io::key("measure", "quantities")
+        .words("a measured quantity", measured_quantities)
+        .description("Quantities that are written as columns `BODY.QUANTITY`.");
 
 Observe read_observe(const Table& t, const Scene& scene) {
   Observe out;
@@ -33,7 +38,7 @@ Observe read_observe(const Table& t, const Scene& scene) {
   out.body = read_flexible(t, kBody, scene);
   const Body& body = scene.body(out.body);
   if (t.has(kPoint) == t.has(kAt))
-    t.fail("an observed point has either a `point` or `at` = \"free_end\"");
+    t.fail("an observed point needs either a `point` or at = \"free_end\"");
   if (t.has(kPoint)) {
     out.point = read_point(t, kPoint, body, scene.time.end);
   } else {
@@ -42,7 +47,7 @@ Observe read_observe(const Table& t, const Scene& scene) {
   }
   for (const Observe& other : scene.observed)
     if (other.name == out.name && other.body == out.body)
-      t.fail(kName, "there is another '" + out.name + "' of '" + out.body + "'");
+      t.fail(kName, "there is another point '" + out.name + "' of '" + out.body + "'");
   return out;
 }
 
@@ -55,11 +60,11 @@ void read_observed(const Table& root, Scene& scene) {
 
 void read_measures(const Table& root, Scene& scene) {
   for (const Table& t : root.tables(tables::kMeasure)) {
-    Measure out;
+    MeasureRequest out;
     out.body = read_flexible(t, kMeasured, scene);
     out.quantities = t.choices(kQuantities);
     const Body& body = scene.body(out.body);
-    for (const Measure& other : scene.measures)
+    for (const MeasureRequest& other : scene.measures)
       if (other.body == out.body) t.fail(kMeasured, "'" + out.body + "' is measured already");
     for (const std::string& quantity : out.quantities)
       if (const std::string why = refusal_of_measure(scene, body, quantity); !why.empty())

@@ -11,7 +11,7 @@
 namespace flexmorph::cases {
 
 /// Quantities of a body that are written as results ([[measure]]), see BodyMeasures.
-struct Measure {
+struct MeasureRequest {
   std::string body;                     ///< Name of the measured body.
   std::vector<std::string> quantities;  ///< Names out of measured_quantities().
 };
@@ -27,7 +27,7 @@ struct Output {
   std::string directory;    ///< Run folder; empty: the command line chooses it.
   int design_every = 1;     ///< Design iterations between VTK files; 0: none are written.
   double motion_every = 0;  ///< Time between VTK files of the motion [s]; 0: none are written.
-  int sharp_every = 25;     ///< Iterations between crisp evaluations; 0: final design only.
+  int crisp_every = 25;     ///< Iterations between crisp evaluations; 0: final design only.
   bool vtk = true, plots = true;          ///< True if VTK files (plots) are written.
   io::LengthUnit unit = io::kMillimetre;  ///< Unit of length of exported drawings and solids.
   double tolerance = 0;  ///< Tolerance of exported curves [m]; 0: see export_tolerance().
@@ -37,7 +37,7 @@ struct Output {
 struct Expectation {
   std::optional<double> value, at_least, at_most;  ///< Value, lower bound and upper bound.
   double tolerance = 0;                            ///< Absolute tolerance of `value`.
-  std::string place;                               ///< File and line, for messages.
+  std::string location;                            ///< File and line, for messages.
 
   /// Returns true if a number satisfies the value and the bounds; NaN never does.
   bool holds(double found) const;

@@ -40,7 +40,7 @@ struct RigidBody {
   std::optional<Vec2> velocity;            ///< Velocity of the origin at the start, if given [m/s].
   std::optional<double> angular_velocity;  ///< Angular velocity at the start, if given [rad/s].
   bool is_placed = false;                  ///< True if the case gives `position` or `angle`.
-  std::string place;                       ///< Place in the file: "cases/four_bar.toml:14".
+  std::string location;                    ///< Place in the file: "cases/four_bar.toml:14".
 
   /// A point mass that is fixed to the rigid body.
   struct AddedMass {

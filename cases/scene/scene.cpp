@@ -11,76 +11,98 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr int kMost = 1'000'000'000;
+constexpr int kMaxCount = 1'000'000'000;
 
-const io::Key& kTitle =
-    io::key("", "title").text("a title").otherwise_as("name of the file").says("What the case is.");
+const io::Key& kTitle = io::key("", "title")
+                            .text("a title")
+                            .otherwise_as("name of the case file")
+                            .description("Title of the case.");
 
 const io::Key& kDirectory = io::key("output", "directory")
                                 .text("a folder")
                                 .otherwise("")
-                                .says("The run folder; empty: `runs/` and the name of the case.");
-const io::Key& kDesignEvery = io::key("output", "design_every")
-                                  .integer("a number of iterations", 0, kMost)
-                                  .otherwise(1)
-                                  .says("Iterations between files of the design; 0: none.");
-const io::Key& kMotionEvery = io::key("output", "motion_every")
-                                  .number(io::not_negative("a time", "s"))
-                                  .otherwise(0.01)
-                                  .says("Time between files of the motion; 0: none.");
-const io::Key& kSharpEvery =
-    io::key("output", "sharp_every")
-        .integer("a number of iterations", 0, kMost)
-        .otherwise(25)
-        .says("Iterations between judgements of the sharp design; 0: at the end only.");
-const io::Key& kVtk =
-    io::key("output", "vtk").boolean().otherwise(true).says("Writes files for ParaView.");
-const io::Key& kPlots =
-    io::key("output", "plots").boolean().otherwise(true).says("Draws plots for the report.");
-const io::Key& kUnit =
-    io::key("output", "unit")
-        .word("a unit of length", io::length_unit_names())
-        .otherwise("mm")
-        .says("Of design.dxf and .stl, which go to a shop; .step is in mm, all else in m.");
+                                .description(
+                                    "Run folder, to which the run writes its files. Empty: `runs/` "
+                                    "and the name of the case.");
+const io::Key& kDesignEvery =
+    io::key("output", "design_every")
+        .integer("a number of iterations", 0, kMaxCount)
+        .otherwise(1)
+        .description("Number of iterations between two VTK files of the design; 0 writes none.");
+const io::Key& kMotionEvery =
+    io::key("output", "motion_every")
+        .number(io::not_negative("a time", "s"))
+        .otherwise(0.01)
+        .description("Time between two VTK files of the motion; 0 writes none.");
+const io::Key& kCrispEvery = io::key("output", "crisp_every")
+                                 .formerly("sharp_every")
+                                 .integer("a number of iterations", 0, kMaxCount)
+                                 .otherwise(25)
+                                 .description(
+                                     "Number of iterations between evaluations of the crisp "
+                                     "design; 0: only the final design.");
+const io::Key& kVtk = io::key("output", "vtk")
+                          .boolean()
+                          .otherwise(true)
+                          .description("True if the run writes VTK files for ParaView.");
+const io::Key& kPlots = io::key("output", "plots")
+                            .boolean()
+                            .otherwise(true)
+                            .description("True if the run draws plots for the report.");
+const io::Key& kUnit = io::key("output", "unit")
+                           .word("a unit of length", io::length_unit_names())
+                           .otherwise("mm")
+                           .description(
+                               "Unit of length of design.dxf and .stl files. Files .step are in "
+                               "mm, all other files in m.");
 const io::Key& kTolerance =
     io::key("output", "tolerance")
         .number(io::positive("a tolerance", "m"))
-        .otherwise_as("a 200th of `min_feature`; of a cell a 100th where that is 0")
-        .says("How far curves of design.dxf and .step may be off the outlines of a design.");
+        .otherwise_as("`min_feature` / 200; a hundredth of a cell if `min_feature` is 0")
+        .description(
+            "Allowed distance of the curves in design.dxf and .step files from the outlines of a "
+            "design.");
 
 const io::Key& kExpected =
     io::key("expect", "*")
         .table()
-        .says(
-            "A column of a table at the end, with `.largest` its largest size, or "
-            "a figure of the design.");
-const io::Key& kValue = io::key("expect.*", "value")
-                            .number(io::any_number("an expected value"))
-                            .otherwise_as("bounds only")
-                            .says("The expected value, with one tolerance.");
-const io::Key& kRelative = io::key("expect.*", "relative")
-                               .number(io::not_negative("a tolerance"))
-                               .otherwise_as("`absolute` is given")
-                               .says("The tolerance, in parts of the value.");
-const io::Key& kAbsolute = io::key("expect.*", "absolute")
-                               .number(io::not_negative("a tolerance"))
-                               .otherwise_as("`relative` is given")
-                               .says("The tolerance, in units of the value.");
+        .renames({{"sharp_compliance", "crisp_compliance"},
+                  {"sharp_volume", "crisp_volume"},
+                  {"sharp_ratio", "crisp_ratio"},
+                  {"energy.error", "energy.error"},
+                  {"energy.error.largest", "energy.error.largest"}})
+        .description(
+            "NAME: final or largest (`.largest`) value of a column, or a number of the design.");
+const io::Key& kValue =
+    io::key("expect.*", "value")
+        .number(io::any_number("an expected value"))
+        .otherwise_as("no value, only bounds")
+        .description("Expected value; it needs one tolerance, `relative` or `absolute`.");
+const io::Key& kRelative =
+    io::key("expect.*", "relative")
+        .number(io::not_negative("a tolerance"))
+        .otherwise_as("with `value`: required unless `absolute` is given")
+        .description("Allowed deviation from `value`, as a fraction of `value`.");
+const io::Key& kAbsolute =
+    io::key("expect.*", "absolute")
+        .number(io::not_negative("a tolerance"))
+        .otherwise_as("with `value`: required unless `relative` is given")
+        .description("Allowed deviation from `value`, in the unit of `value`.");
 const io::Key& kAtLeast = io::key("expect.*", "at_least")
                               .number(io::any_number("a bound"))
-                              .otherwise_as("no bound")
-                              .says("A lower bound.");
+                              .otherwise_as("no lower bound")
+                              .description("Lower bound of the result.");
 const io::Key& kAtMost = io::key("expect.*", "at_most")
                              .number(io::any_number("a bound"))
-                             .otherwise_as("no bound")
-                             .says("An upper bound.");
+                             .otherwise_as("no upper bound")
+                             .description("Upper bound of the result.");
 
 Output read_output(const io::Table& t) {
   Output output;
   output.directory = t.string(kDirectory);
   output.design_every = t.integer(kDesignEvery);
   output.motion_every = t.number(kMotionEvery);
-  output.sharp_every = t.integer(kSharpEvery);
+  output.crisp_every = t.integer(kCrispEvery);
   output.vtk = t.boolean(kVtk);
   output.plots = t.boolean(kPlots);
   output.unit = *io::find_length_unit(t.choice(kUnit));
@@ -91,20 +113,20 @@ Output read_output(const io::Table& t) {
 /// Checks the tolerance of exported curves. The number of vertices of polygons grows with
 /// 1/√tolerance, and curves with an error of more than a cell do not represent the design.
 void check_tolerance(const io::Table& t, const Scene& scene) {
-  constexpr double kSmallest = 1e-4;  // [cells]
+  constexpr double kMinCell = 1e-4;  // [cells]
   if (!t.has(kTolerance)) return;
   for (const BodyDesign& design : scene.designs) {
     const double cell = std::min(design.grid.dx(), design.grid.dy());
-    if (scene.output.tolerance < kSmallest * cell || scene.output.tolerance > cell)
-      t.fail(kTolerance, "a tolerance of exported curves is between " + io::to_text(kSmallest) +
-                             " cells and a cell of each design: that of '" + design.body +
-                             "' has " + io::to_text(cell) + " m");
+    if (scene.output.tolerance < kMinCell * cell || scene.output.tolerance > cell)
+      t.fail(kTolerance, "a tolerance of exported curves lies between " + io::to_text(kMinCell) +
+                             " cells and one cell of each design; the cell of '" + design.body +
+                             "' measures " + io::to_text(cell) + " m");
   }
 }
 
 Expectation read_expectation(const io::Table& t) {
   Expectation expected;
-  expected.place = t.place();
+  expected.location = t.location();
   const auto bound = [&](const io::Key& key) -> std::optional<double> {
     if (!t.has(key)) return {};
     return t.number(key);
@@ -114,12 +136,12 @@ Expectation read_expectation(const io::Table& t) {
   if (t.has(kValue)) {
     expected.value = t.number(kValue);
     if (t.has(kRelative) == t.has(kAbsolute))
-      t.fail("a value comes with one tolerance, `relative` or `absolute`");
+      t.fail("a `value` needs exactly one tolerance, `relative` or `absolute`");
     expected.tolerance =
         t.has(kRelative) ? t.number(kRelative) * std::abs(*expected.value) : t.number(kAbsolute);
   }
   if (!expected.value && !expected.at_least && !expected.at_most)
-    t.fail("an expectation has a `value` with a tolerance, `at_least` or `at_most`");
+    t.fail("an expected result needs a `value` with a tolerance, `at_least` or `at_most`");
   return expected;
 }
 
@@ -146,7 +168,9 @@ bool Expectation::holds(double found) const {
          (!at_least || found >= *at_least) && (!at_most || found <= *at_most);
 }
 
-fem::TermPlace Body::place() const { return in_space() ? fem::TermPlace::space : row->in_plane; }
+fem::TermDomain Body::term_domain() const {
+  return in_space() ? fem::TermDomain::space : row->in_plane;
+}
 
 double Body::length_at(double time) const {
   if (!flow) return length;
@@ -169,9 +193,9 @@ std::vector<double> Body::start_lines(double root, int count) const {
   return out;
 }
 
-bool Scene::has_free_lines() const {
+bool Scene::has_eulerian_lines() const {
   return std::any_of(bodies.begin(), bodies.end(),
-                     [](const Body& b) { return b.has_free_lines(); });
+                     [](const Body& b) { return b.has_eulerian_lines(); });
 }
 
 bool Scene::has_heat() const {
@@ -191,7 +215,9 @@ void Scene::refuse(const std::string& key_path, const std::string& why) const {
 
 std::string Verify::words() const {
   if (cells == 1) return "the cells of the designs";
-  if (cells > 1) return std::to_string(cells) + " x " + std::to_string(cells) + " parts of cells";
+  if (cells > 1)
+    return std::to_string(cells) + " x " + std::to_string(cells) +
+           " elements per cell of the designs";
   if (!mesh) return std::to_string(refine) + " times the elements in each direction";
   return std::to_string((*mesh)[0]) + " x " + std::to_string((*mesh)[1]) + " elements";
 }

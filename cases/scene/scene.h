@@ -39,16 +39,16 @@ struct Scene {
   std::optional<VectorXd> gravity;        ///< Gravity at the start (dim) [m/s^2]; absent: none.
   std::vector<Law> gravity_laws;          ///< Components of gravity (dim) [m/s^2]; empty: none.
   std::vector<Drive> drives;              ///< Named functions of time.
-  std::vector<Hub> hubs;                 ///< Rigid frames with prescribed motion that carry bodies.
-  std::vector<RigidBody> rigid_bodies;   ///< Rigid bodies.
-  std::vector<Body> bodies;              ///< Plates and beams.
-  std::vector<Joint> joints;             ///< Joints, in the order of the case.
-  std::vector<Spring> springs;           ///< Springs and dampers.
-  std::optional<Trajectory> trajectory;  ///< Path of a rigid body that drives follow from.
-  std::vector<PointMass> point_masses;   ///< Point masses on plates and beams.
-  std::vector<BodyLoad> loads;           ///< Loads on moving bodies.
-  std::vector<Observe> observed;         ///< Material points whose positions are written.
-  std::vector<Measure> measures;         ///< Measured quantities of bodies.
+  std::vector<Hub> hubs;                ///< Rigid frames with prescribed motion that carry bodies.
+  std::vector<RigidBody> rigid_bodies;  ///< Rigid bodies.
+  std::vector<Body> bodies;             ///< Plates and beams.
+  std::vector<Joint> joints;            ///< Joints, in the order of the case.
+  std::vector<Spring> springs;          ///< Springs and dampers.
+  std::optional<TargetTrajectory> trajectory;  ///< Path of a rigid body that drives follow from.
+  std::vector<PointMass> point_masses;         ///< Point masses on plates and beams.
+  std::vector<BodyLoad> loads;                 ///< Loads on moving bodies.
+  std::vector<Observe> observed;               ///< Material points whose positions are written.
+  std::vector<MeasureRequest> measures;        ///< Measured quantities of bodies.
   std::optional<Esl> esl;  ///< Equivalent static loads; present if moving bodies are designed.
   std::vector<BodyDesign> designs;   ///< Designs, one per designed body.
   optim::Settings optimizer;         ///< Settings of the optimizer.
@@ -81,11 +81,11 @@ struct Scene {
   /// Returns true if the plates are in space; either all bodies are in space or none is.
   bool in_space() const { return !bodies.empty() && bodies.front().in_space(); }
   /// Returns true if a body has a material line whose material coordinate is an unknown.
-  bool has_free_lines() const;
+  bool has_eulerian_lines() const;
   /// Returns true if a body is heated.
   bool has_heat() const;
   /// Returns true if designs are verified by motions on the cells of the designs.
-  bool judges_on_cells() const { return verify && verify->cells > 0; }
+  bool verifies_on_cells() const { return verify && verify->cells > 0; }
   /// Throws an error that is located in the case file.
   /// @param key_path  see io::CaseFile::where(): "body.plate.elements"
   /// @throws Error (input): "<file:line:column>: <path> = <value>: <why>"

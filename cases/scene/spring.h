@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "cases/scene/rigid_body.h"
-#include "fem/link.h"
+#include "fem/force_element.h"
 #include "io/case_files/case_file.h"
 
 /// The springs and dampers of a case: [[spring]].
@@ -39,8 +39,8 @@ struct SpringRow {
   /// Creates the force element.
   /// @param start_angle  angle at the start from the first axis of a to the first axis of b, whole
   ///                     turns included [rad]
-  std::unique_ptr<fem::Link> (*make)(const Spring& spring, const fem::MarkerPlace& a,
-                                     const fem::MarkerPlace& b, double start_angle);
+  std::unique_ptr<fem::ForceElement> (*make)(const Spring& spring, const fem::MarkerLocation& a,
+                                             const fem::MarkerLocation& b, double start_angle);
 
   /// True if a row with `axes` needs the axes of both anchors; if false, b may be a point of a
   /// plate or beam, which has no axis.

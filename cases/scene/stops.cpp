@@ -10,8 +10,8 @@ using io::Key;
 using io::Table;
 using Coordinate = fem::StopData::Coordinate;
 
-const char* const kLengths = "stop, distance_stop";
-const char* const kAngles = "angle_stop";
+const char* const kLengths = "`type` is \"stop\" or \"distance_stop\"";
+const char* const kAngles = "`type = \"angle_stop\"`";
 
 /// Keys of the numbers of a stop, in metres or in radians.
 struct StopKeys {
@@ -24,26 +24,30 @@ StopKeys stop_keys(const char* types, const char* unit) {
   const auto limit = [&](const char* name, const char* sentence) -> const Key& {
     return io::key("spring", name)
         .number(io::any_number("a limit", u))
-        .otherwise_as("there is none")
+        .otherwise_as("no limit")
         .when(types)
-        .says(sentence);
+        .description(sentence);
   };
-  return {limit("least", "Below this it pushes; at least one of `least` and `most` is given."),
-          limit("most", "Above this it pushes."),
-          io::key("spring", "stiffness")
-              .number(io::positive("a stiffness", per))
-              .when(types)
-              .says("Beyond the limit."),
-          io::key("spring", "damping")
-              .number(io::not_negative("a damping", rate))
-              .otherwise(0.0)
-              .when(types)
-              .says("Beyond the limit; it never pulls."),
-          io::key("spring", "onset")
-              .number(io::not_negative("a width", u))
-              .otherwise(0.0)
-              .when(types)
-              .says("Beyond the limit it takes this to become fully stiff: no kink of the force.")};
+  return {
+      limit("least",
+            "Lower limit, below which the stop pushes back; `least`, `most` or both are required."),
+      limit("most",
+            "Upper limit, above which the stop pushes back; `least`, `most` or both are required."),
+      io::key("spring", "stiffness")
+          .number(io::positive("a stiffness", per))
+          .when(types)
+          .description("Stiffness of the stop beyond a limit."),
+      io::key("spring", "damping")
+          .number(io::not_negative("a damping", rate))
+          .otherwise(0.0)
+          .when(types)
+          .description("Damping coefficient of the stop beyond a limit. The stop never pulls."),
+      io::key("spring", "onset")
+          .number(io::not_negative("a width", u))
+          .otherwise(0.0)
+          .when(types)
+          .description("Width of the transition beyond a limit, in which the stiffness rises from "
+                       "0 to `stiffness`.")};
 }
 const StopKeys kOfLengths = stop_keys(kLengths, "m"), kOfAngles = stop_keys(kAngles, "rad");
 
@@ -53,8 +57,9 @@ void read_stop(const Table& t, const StopKeys& keys, Coordinate coordinate, Spri
   if (t.has(keys.least)) data.least = t.number(keys.least);
   if (t.has(keys.most)) data.most = t.number(keys.most);
   if (!std::isfinite(data.least) && !std::isfinite(data.most))
-    t.fail("a stop has a limit: `least`, `most` or both");
-  if (data.least >= data.most) t.fail(keys.most, "`least` lies below `most`");
+    t.fail("a stop needs a limit: `least`, `most` or both");
+  if (data.least >= data.most)
+    t.fail(keys.most, "an upper limit `most` is greater than the lower limit `least`");
   if (coordinate == Coordinate::distance && std::isfinite(data.most) && data.most <= 0)
     t.fail(keys.most, "a distance is positive");
   data.stiffness = t.number(keys.stiffness);
@@ -63,8 +68,8 @@ void read_stop(const Table& t, const StopKeys& keys, Coordinate coordinate, Spri
   spring.own = data;
 }
 
-std::unique_ptr<fem::Link> make(const Spring& spring, const fem::MarkerPlace& a,
-                                const fem::MarkerPlace& b, double start_angle) {
+std::unique_ptr<fem::ForceElement> make(const Spring& spring, const fem::MarkerLocation& a,
+                                        const fem::MarkerLocation& b, double start_angle) {
   fem::StopData data = std::any_cast<const fem::StopData&>(spring.own);
   data.start_angle = start_angle;
   return fem::make_stop(spring.name, a, b, data);
@@ -76,7 +81,9 @@ extern const SpringRow kStop, kDistanceStop, kAngleStop;
 
 const SpringRow kStop = {
     .name = "stop",
-    .sentence = "Pushes where point b, along the first axis of a, is beyond a limit.",
+    .sentence =
+        "A stop that pushes point b back if its position along the first axis of a is beyond a "
+        "limit.",
     .points = true,
     .axes = true,
     .read = [](const Table& t, Spring& s) { read_stop(t, kOfLengths, Coordinate::along, s); },
@@ -85,7 +92,7 @@ const SpringRow kStop = {
 
 const SpringRow kDistanceStop = {
     .name = "distance_stop",
-    .sentence = "Pushes where two points are nearer or farther than a limit: a bumper, a rope.",
+    .sentence = "A stop that limits the distance between two points, such as a bumper or a rope.",
     .points = true,
     .axes = false,
     .read = [](const Table& t, Spring& s) { read_stop(t, kOfLengths, Coordinate::distance, s); },
@@ -93,7 +100,7 @@ const SpringRow kDistanceStop = {
 
 const SpringRow kAngleStop = {
     .name = "angle_stop",
-    .sentence = "Turns back where the axes of two rigid bodies are turned beyond a limit.",
+    .sentence = "A stop that limits the angle between the first axes of two rigid bodies.",
     .points = false,
     .axes = true,
     .read = [](const Table& t, Spring& s) { read_stop(t, kOfAngles, Coordinate::angle, s); },

@@ -11,48 +11,68 @@ io::Key& one(const char* name, const char* absence = "absent") {
 /// Declares a list of tables.
 io::Key& many(const char* name) { return io::key("", name).tables_of().otherwise_as("none"); }
 
-constexpr const char* kDefaults = "all its defaults";
+constexpr const char* kDefaults = "default values";
 
 }  // namespace
 
-const io::Key& kGravity =
-    io::key("", "gravity")
-        .numbers_or_names(io::any_number("gravity", "m/s^2"), "a drive", 2, 3)
-        .otherwise_as("nothing weighs")
-        .says(
-            "Two entries in the plane, three in space; with a [domain] the weight of the design.");
+const io::Key& kGravity = io::key("", "gravity")
+                              .numbers_or_names(io::any_number("gravity", "m/s^2"), "a drive", 2, 3)
+                              .otherwise_as("no gravity")
+                              .description(
+                                  "Acceleration of gravity: 2 components, in space 3. With a "
+                                  "[domain] it defines the weight.");
 const io::Key& kConstants =
-    one("constants").says("Numbers with names, for the formulas of drives.");
-const io::Key& kTime = one("time").says("How long the motion lasts, and its steps.");
-const io::Key& kStatic =
-    one("static").says("In place of a motion: equilibria of the bodies under growing loads.");
-const io::Key& kDrive = many("drive").says("A function of time with a name.");
-const io::Key& kHub = many("hub").says("A driven frame that plates sit in.");
-const io::Key& kRigidBody = many("rigid_body").says("A body of a mechanism that does not bend.");
-const io::Key& kBody = many("body").says("A plate or a beam.");
-const io::Key& kJoint = many("joint").says("What holds a body, or two together.");
-const io::Key& kSpring = many("spring").says("A spring and damper between two places.");
+    one("constants").description("Named constants for the formulas of drives.");
+const io::Key& kTime =
+    one("time").description("Duration, time integration and initial state of the motion.");
+const io::Key& kStatic = one("static").description(
+    "Nonlinear static analysis in place of a motion, under loads or temperatures that increase.");
+const io::Key& kDrive = many("drive").description(
+    "A named function of time, or a coordinate of the curve of a `path` joint.");
+const io::Key& kHub =
+    many("hub").description("A rigid frame with prescribed motion that carries plates or beams.");
+const io::Key& kRigidBody = many("rigid_body").description("A rigid body of a mechanism.");
+const io::Key& kBody = many("body").description("A plate or a beam.");
+const io::Key& kJoint =
+    many("joint").description("A joint that holds or drives a body, or connects two bodies.");
+const io::Key& kSpring = many("spring").description(
+    "A spring, damper, bushing or stop between two bodies, or a body and the ground.");
 const io::Key& kTrajectory =
-    one("trajectory").says("The path of a rigid body that drives follow from.");
-const io::Key& kPointMass = many("point_mass").says("A mass on a body.");
-const io::Key& kLoad = many("load").says("Forces on a body or, at rest, on the domain.");
-const io::Key& kObserve = many("observe").says("A material point whose position is written.");
-const io::Key& kMeasure = many("measure").says("Quantities of a body that are written.");
-const io::Key& kDomain = one("domain").says("A plate at rest that is designed: nothing moves.");
-const io::Key& kSupport = many("support").says("Where the domain is held.");
-const io::Key& kEsl =
-    one("esl").says("When the motion becomes equivalent static loads, and of which kind.");
-const io::Key& kDesign = many("design").says("The design of a body.");
-const io::Key& kOptimizer = one("optimizer", kDefaults).says("Who solves the design problem.");
+    one("trajectory")
+        .description(
+            "Prescribed path of a rigid body; drives with `from = \"trajectory\"` follow from it.");
+const io::Key& kPointMass = many("point_mass").description("A point mass on a body.");
+const io::Key& kLoad =
+    many("load").description("A load on a body; with a [domain], a load case of the plate.");
+const io::Key& kObserve =
+    many("observe").description("A material point whose position is written to the result tables.");
+const io::Key& kMeasure = many("measure").description(
+    "Measured quantities of a body that are written to the result tables.");
+const io::Key& kDomain = one("domain").description(
+    "A static plate that is designed. A case with a [domain] has no motion.");
+const io::Key& kSupport = many("support").description("A support of the [domain].");
+const io::Key& kEsl = one("esl").description(
+    "Times and definition of the equivalent static loads that represent the motion in the design.");
+const io::Key& kDesign = many("design").description("The design problem of one body.");
+const io::Key& kOptimizer =
+    one("optimizer", kDefaults)
+        .description("Optimizer that solves the design problems, and its stopping criteria.");
 const io::Key& kCycle =
-    one("cycle", kDefaults).says("How often the design is taken back into the motion.");
-const io::Key& kVerify =
-    one("verify").says("The final design moves once more, on a finer mesh or on its cells.");
+    one("cycle", kDefaults)
+        .description(
+            "Cycles of motion, equivalent static loads and design, and their stopping criteria.");
+const io::Key& kVerify = one("verify").description(
+    "Verification of final designs by one more motion, on a finer mesh or on the design cells.");
 const io::Key& kCertificate =
-    one("certificate").says("What the motion itself says of final designs, by its exact gradient.");
-const io::Key& kOutput = one("output", kDefaults).says("What a run writes.");
-const io::Key& kAccuracy = one("accuracy").says("What `flexmorph accuracy` measures.");
-const io::Key& kExpect = one("expect").says("Numbers that a run must come to, by their names.");
+    one("certificate")
+        .description(
+            "Optimality certificate of the final designs from the exact gradient of the motion.");
+const io::Key& kOutput = one("output", kDefaults).description("Files that a run writes.");
+const io::Key& kAccuracy =
+    one("accuracy")
+        .description("Settings of the command `flexmorph accuracy`; a run ignores them.");
+const io::Key& kExpect =
+    one("expect").description("Results that a run must reproduce, by their names.");
 
 const std::vector<std::string>& order() {
   static const std::vector<std::string> kOrder = {"",

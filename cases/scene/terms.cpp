@@ -13,7 +13,8 @@ using io::Key;
 
 /// Declares a number that a term needs as a key of [[body]].
 const Key& declared(const fem::TermKey& key, const std::string& term) {
-  Key& out = io::key("body", key.name).when("the term `" + term + "`").says(key.sentence);
+  Key& out =
+      io::key("body", key.name).when("`terms` has \"" + term + "\"").description(key.sentence);
   if (key.whole) {
     out.integer(key.noun, static_cast<int>(key.low), static_cast<int>(key.high));
     if (key.fallback) out.otherwise(static_cast<int>(*key.fallback));
@@ -50,14 +51,16 @@ io::Glossary all_terms() {
 
 const Key& body_keys::kTerms = io::key("body", "terms")
                                    .words("a term", all_terms)
-                                   .says("What acts in it: what is not listed is not there.");
+                                   .description(
+                                       "Terms of the equations of motion of the body. A term that "
+                                       "is not listed does not act.");
 
 void declare_term_keys() { term_keys(); }
 
 void read_terms(const io::Table& t, const Scene& scene, Body& body) {
   const Key& key = body_keys::kTerms;
-  body.terms = t.choices(key.called(body.row->term), fem::term_names(body.place()));
-  if (const std::string why = fem::refusal_of_terms(body.place(), body.terms, !scene.statics);
+  body.terms = t.choices(key.called(body.row->term), fem::term_names(body.term_domain()));
+  if (const std::string why = fem::refusal_of_terms(body.term_domain(), body.terms, !scene.statics);
       !why.empty())
     t.fail(key, why);
   for (const std::string& term : body.terms)

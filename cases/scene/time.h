@@ -27,7 +27,7 @@ enum class Start {
 };
 
 /// Largest number of steps of a motion or a path; steps are counted in an int.
-constexpr double kMostSteps = std::numeric_limits<int>::max();
+constexpr double kMaxSteps = std::numeric_limits<int>::max();
 
 /// The time span and the time integration of a motion.
 struct TimeSpan {

@@ -13,24 +13,25 @@ using Table = std::vector<std::vector<std::string>>;
 
 /// The colour and the meaning of a verdict.
 struct Legend {
-  Verdict verdict;
+  StabilityVerdict verdict;
   const char *color, *meaning;
 };
 constexpr std::array<Legend, 4> kLegend = {{
-    {Verdict::stable, "#7fc97f",
+    {StabilityVerdict::stable, "#7fc97f",
      "exit code 0, all numbers are finite, and the run gives no warning"},
-    {Verdict::refused, "#a6cee3", "exit code 2 or 3, and a message says why"},
-    {Verdict::degraded, "#fdc086", "the run gives a warning, or exceeded its time limit"},
-    {Verdict::wrong, "#e31a1c",
+    {StabilityVerdict::refused, "#a6cee3",
+     "exit code 2 or 3, with a message that gives the reason"},
+    {StabilityVerdict::degraded, "#fdc086", "the run gives a warning, or exceeds its time limit"},
+    {StabilityVerdict::wrong, "#e31a1c",
      "a crash, a hang, a number that is not finite, or an end without a message"},
 }};
 
-const Legend& legend_of(Verdict verdict) {
+const Legend& legend_of(StabilityVerdict verdict) {
   return *std::find_if(kLegend.begin(), kLegend.end(),
                        [&](const Legend& each) { return each.verdict == verdict; });
 }
 
-std::string count(std::span<const StabilityRow> rows, Verdict verdict,
+std::string count(std::span<const StabilityRow> rows, StabilityVerdict verdict,
                   const std::string& suite = "") {
   return std::to_string(std::count_if(rows.begin(), rows.end(), [&](const StabilityRow& row) {
     return row.assessment.verdict == verdict && (suite.empty() || row.suite == suite);
@@ -40,8 +41,8 @@ std::string count(std::span<const StabilityRow> rows, Verdict verdict,
 std::string summary(std::span<const StabilityRow> rows) {
   std::string out = std::to_string(rows.size()) + " rows";
   for (const Legend& each : kLegend)
-    out += (each.verdict == Verdict::stable ? ": " : ", ") + count(rows, each.verdict) + " " +
-           to_string(each.verdict);
+    out += (each.verdict == StabilityVerdict::stable ? ": " : ", ") + count(rows, each.verdict) +
+           " " + to_string(each.verdict);
   return out;
 }
 
@@ -87,11 +88,11 @@ std::string rectangle(double x, double y, double width, double height, const std
 
 /// Returns the coloured cell of a run; its tool tip contains the reason of the verdict.
 std::string cell_at(double x, double y, const StabilityRow& row) {
-  const auto& [defect, position, velocity, newton, rejected, condition, area] =
+  const auto& [energy_error, position, velocity, newton, rejected, condition, area] =
       row.assessment.numbers;
-  const std::string words = defect   ? to_text(*defect, 1)
-                            : newton ? to_text(*newton, 2)
-                                     : "exit " + to_text(row.exit_code);
+  const std::string words = energy_error ? to_text(*energy_error, 1)
+                            : newton     ? to_text(*newton, 2)
+                                         : "exit " + to_text(row.exit_code);
   return "<g><title>" +
          io::xml_escaped(row.case_name + ", " + row.parameter + ": " +
                          to_string(row.assessment.verdict) + " " + row.assessment.reason) +
@@ -138,7 +139,7 @@ std::string stability_markdown(std::span<const StabilityRow> rows) {
 std::string stability_text(std::span<const StabilityRow> rows, bool all) {
   std::string out = all ? io::aligned_table(table_of(rows, 120)) + "\n" : "";
   for (const StabilityRow& row : rows)
-    if (!all && row.assessment.verdict == Verdict::wrong)
+    if (!all && row.assessment.verdict == StabilityVerdict::wrong)
       out += "WRONG: " + row.case_name + ", " + row.suite + ", " + row.parameter + ": " +
              row.assessment.reason + "\n";
   return out + summary(rows) + "\n";
@@ -160,7 +161,8 @@ std::string stability_svg(std::span<const StabilityRow> rows) {
             text_at(x + 20, 26, to_string(each.verdict) + " " + count(rows, each.verdict));
     x += 110;
   }
-  body += text_at(10, 48, "in the cells: energy defect / largest energy, else Newton iterations");
+  body += text_at(
+      10, 48, "cells: energy error / largest energy; if there is none, Newton iterations per step");
   for (size_t i = 0; i < cases.size(); ++i) {
     const std::string at =
         to_text(x_of(static_cast<double>(i) + 0.6)) + " " + to_text(kHeadHeight - 6);

@@ -54,7 +54,8 @@ void add_case(const StabilityOptions& options, const std::string& name, Plan& ou
   for (const Suite* each : wanted_suites(options)) {
     size_t count = 0;
     for (const Perturbation& p : each->rows(scene)) {
-      if (unchanged.insert(p.part).second) add("base", to_string(p.part), {"as it is", {}, p.part});
+      if (unchanged.insert(p.part).second)
+        add("base", to_string(p.part), {"unchanged", {}, p.part});
       add(each->name, each->name + "_" + std::to_string(++count), p);
     }
   }
@@ -110,7 +111,7 @@ int check_stability(const StabilityOptions& options) {
   std::fputs(stability_text(ran, !options.quiet).c_str(), stdout);
   std::printf("%s.csv, .md, .svg\n", stem.c_str());
   const bool any_wrong = std::any_of(ran.begin(), ran.end(), [](const StabilityRow& row) {
-    return row.assessment.verdict == Verdict::wrong;
+    return row.assessment.verdict == StabilityVerdict::wrong;
   });
   return outcome.exit_code == 4 ? 4 : any_wrong ? 3 : 0;
 }

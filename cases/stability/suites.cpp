@@ -133,7 +133,7 @@ Rows temperature(const Scene& scene) {
   if (scene.statics) return out;
   for (const char* profile : {"step", "linear", "cosine"})
     add(std::string("profile ") + profile, "profile", profile);
-  add("settles within a step", "settle", to_text(scene.time.step));
+  add("settling time of one step", "settle", to_text(scene.time.step));
   return out;
 }
 
@@ -160,7 +160,7 @@ Rows loads(const Scene& scene) {
 Rows voids(const Scene& scene) {
   Rows out;
   for (const double factor : {1e-3, 1e-5, 1e-7, 1e-9}) {
-    Perturbation row{"void of " + to_text(factor), {}, Part::design};
+    Perturbation row{"void scale factor " + to_text(factor), {}, Part::design};
     for (size_t i = 0; i < scene.designs.size(); ++i) {
       row.overrides.push_back(entry("design", i, "alpha", factor));
       if (!scene.domain) row.overrides.push_back(entry("design", i, "stiffness_void", factor));
@@ -174,7 +174,7 @@ Rows voids(const Scene& scene) {
 /// heat and free lines of the mesh.
 Rows long_runs(const Scene& scene) {
   Rows out;
-  if (!moves(scene) || scene.has_free_lines() || scene.has_heat() || !scene.hubs.empty() ||
+  if (!moves(scene) || scene.has_eulerian_lines() || scene.has_heat() || !scene.hubs.empty() ||
       !scene.drives.empty() || !scene.loads.empty())
     return out;
   const auto add = [&](const std::string& name, double step, const std::string& scheme) {
@@ -188,7 +188,7 @@ Rows long_runs(const Scene& scene) {
   };
   for (const std::string scheme : {"time.rho_inf=1", "time.rho_inf=0.9"}) {
     add(scheme, scene.time.step, scheme);
-    add(scheme + ", a tenth of the step", 0.1 * scene.time.step, scheme);
+    add(scheme + ", a tenth of the time step", 0.1 * scene.time.step, scheme);
   }
   add("energy_momentum", scene.time.step, "time.integrator=energy_momentum");
   return out;
@@ -211,7 +211,7 @@ const std::vector<Suite>& suites() {
 const Suite& suite(const std::string& name) {
   for (const Suite& each : suites())
     if (each.name == name) return each;
-  throw Error::input("--suites " + name + ": no such suite; there are: " +
+  throw Error::input("--suites " + name + ": this suite is unknown; the suites are: " +
                      joined(std::views::transform(suites(), &Suite::name)));
 }
 

@@ -30,7 +30,7 @@ auto numbers_of(const json& run) {
   for (const json& solver : solvers)
     if (const auto c = number(solver, "condition")) condition = std::max(*c, condition.value_or(1));
   return decltype(Assessment::numbers){
-      number(motion, "energy_defect"),      number(motion, "constraint_drift"),
+      number(motion, "energy_error"),       number(motion, "constraint_drift"),
       number(motion, "velocity_drift"),     newton,
       number(solved, "rejected_steps"),     condition,
       number(motion, "smallest_area_ratio")};
@@ -62,7 +62,8 @@ std::string first_non_finite(const std::string& folder, const json& run) {
   for (const char* part : {"motion", "static"})
     if (run.is_object() && run.contains(part) && run[part].is_object())
       for (const auto& [key, value] : run[part].items())
-        if (value.is_null()) return std::string("run.json: ") + part + "." + key + " is no number";
+        if (value.is_null())
+          return std::string("run.json: ") + part + "." + key + " is not a number";
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end;
@@ -78,15 +79,15 @@ std::string first_non_finite(const std::string& folder, const json& run) {
 
 }  // namespace
 
-std::string to_string(Verdict verdict) {
+std::string to_string(StabilityVerdict verdict) {
   switch (verdict) {
-    case Verdict::stable:
+    case StabilityVerdict::stable:
       return "stable";
-    case Verdict::refused:
+    case StabilityVerdict::refused:
       return "refused";
-    case Verdict::degraded:
+    case StabilityVerdict::degraded:
       return "degraded";
-    case Verdict::wrong:
+    case StabilityVerdict::wrong:
       break;
   }
   return "WRONG";
@@ -99,17 +100,17 @@ Assessment assess(const VariantResult& result) {
   if (run.is_object()) out.numbers = numbers_of(run);
   out.reason = result.message;
   if (ending.over_time && ending.signal == SIGKILL) {
-    out.reason = "the run did not end when it was asked to";
+    out.reason = "the run did not end after SIGINT";
   } else if (std::string found = first_non_finite(result.directory, run); !found.empty()) {
     out.reason = std::move(found);
   } else if (ending.over_time) {
-    out.verdict = Verdict::degraded;
+    out.verdict = StabilityVerdict::degraded;
   } else if (result.done()) {
     const json warnings = run.value("warnings", json::array());
-    out.verdict = warnings.empty() ? Verdict::stable : Verdict::degraded;
+    out.verdict = warnings.empty() ? StabilityVerdict::stable : StabilityVerdict::degraded;
     if (!warnings.empty()) out.reason = warnings.front().get<std::string>();
   } else if ((ending.code == 2 || ending.code == 3) && !result.message.empty()) {
-    out.verdict = Verdict::refused;
+    out.verdict = StabilityVerdict::refused;
   }
   return out;
 }

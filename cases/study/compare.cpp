@@ -20,10 +20,10 @@ std::vector<std::string> optimizers_of(const CompareOptions& options) {
   if (options.optimizers.empty()) return known;
   for (const std::string& name : options.optimizers) {
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error::input("compare: --optimizers: '" + name + "' is unknown; there are " +
-                         joined(known));
+      throw Error::input("compare: --optimizers: '" + name +
+                         "' is unknown; the optimizers are: " + joined(known));
     if (std::count(options.optimizers.begin(), options.optimizers.end(), name) > 1)
-      throw Error::input("compare: --optimizers: '" + name + "' is there twice");
+      throw Error::input("compare: --optimizers: '" + name + "' appears more than once");
   }
   return options.optimizers;
 }
@@ -51,7 +51,7 @@ Comparison plan(CompareOptions& options) {
   out.starts = options.starts;
   const Scene scene = read_scene(io::CaseFile(find_case(study.case_name), study.overrides));
   if (scene.designs.empty())
-    throw Error::input("case '" + scene.name + "' has no [[design]]: there is nothing to compare");
+    throw Error::input("case '" + scene.name + "' has no [[design]]; `compare` needs a design");
   out.table.names = {"run", "optimizer", "start"};
   if (study.directory.empty()) study.directory = "runs/compare_" + scene.name;
   // VTK files of every iteration of every run are rarely needed. --set output.vtk=true enables

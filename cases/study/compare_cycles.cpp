@@ -29,7 +29,7 @@ const Way& way_called(const std::string& name) {
                                   [&](const Way& w) { return w.name == name; });
   if (found == std::end(kWays))
     throw Error::input("compare: --cycles: '" + name +
-                       "' is unknown; there are esl, corrected, direct");
+                       "' is unknown; the kinds of cycles are: esl, corrected, direct");
   return *found;
 }
 
@@ -54,10 +54,24 @@ struct Result {
   }
 };
 
+/// Columns of compare.csv.
+const std::vector<std::string> kColumns = {"cycles",
+                                           "status",
+                                           "least J met",
+                                           "J",
+                                           "crisp J",
+                                           "KKT residual",
+                                           "left [%]",
+                                           "motions",
+                                           "CPU of correcting [s]",
+                                           "CPU of the run [s]"};
+
+/// Returns the headings of the printed table, and a row per kind of cycles in the order of
+/// kColumns.
 std::vector<std::vector<std::string>> table_of(const std::vector<Result>& results) {
-  std::vector<std::vector<std::string>> out = {{"cycles", "status", "least J met", "J", "sharp J",
-                                                "KKT residual", "left [%]", "motions",
-                                                "CPU of correcting [s]", "CPU of the run [s]"}};
+  std::vector<std::vector<std::string>> out = {
+      {"cycles", "status", "smallest J", "final J", "final crisp J", "KKT residual",
+       "predicted decrease [%]", "motions", "CPU of corrections [s]", "CPU of the run [s]"}};
   for (const Result& r : results) {
     const auto cycles = r.run.value("corrected_cycles", nlohmann::json::array());
     const auto last = [&](const char* key) {
@@ -66,7 +80,7 @@ std::vector<std::vector<std::string>> table_of(const std::vector<Result>& result
     out.push_back({r.name, r.run.value("status", "missing"),
                    cycles.empty() ? "" : io::to_text(r.curve().y.back(), 6),
                    io::to_text(r.number("certificate", "value"), 6),
-                   io::to_text(r.number("certificate", "sharp_value"), 6),
+                   io::to_text(r.number("certificate", "crisp_value"), 6),
                    io::to_text(r.number("certificate", "kkt"), 3),
                    io::to_text(100 * r.number("certificate", "left"), 3),
                    io::to_text(last("motions")), io::to_text(last("seconds"), 4),
@@ -80,17 +94,19 @@ void write(const std::vector<Result>& results, const std::string& directory,
   const auto rows = table_of(results);
   std::vector<std::vector<io::Cell>> cells;
   for (size_t i = 1; i < rows.size(); ++i) cells.emplace_back(rows[i].begin(), rows[i].end());
-  io::CsvWriter(directory + "/compare.csv", rows.front(), cells);
-  io::write_file(directory + "/compare.md",
-                 "# " + name + "\n\n" + io::markdown_table(rows) +
-                     "\nJ, its KKT residual and what is left within the move limit are those of "
-                     "the certificate, of the same motion for all, at the design that was kept: "
-                     "where J of the outlines does not fall on the cells of the case, the one for "
-                     "loads. CPU of correcting: without the design for loads they all begin "
-                     "with.\n");
+  io::CsvWriter(directory + "/compare.csv", kColumns, cells);
+  io::write_file(
+      directory + "/compare.md",
+      "# " + name + "\n\n" + io::markdown_table(rows) +
+          "\nThe final J, its KKT residual and the predicted decrease within the move "
+          "limit come from the optimality certificate of the final design. All "
+          "certificates use one motion. If the corrected cycles do not reduce J of the "
+          "crisp outlines on the design mesh of the case, the final design is the design "
+          "before them. The CPU time of the corrections does not include the design "
+          "under equivalent static loads, with which all runs begin.\n");
   io::Figure figure{.title = name,
-                    .panels = {{.x = {.label = "CPU time of correcting [s]"},
-                                .y = {.label = "J, the least so far"}}}};
+                    .panels = {{.x = {.label = "CPU time of corrections [s]"},
+                                .y = {.label = "smallest J so far"}}}};
   for (const Result& r : results)
     if (io::Curve curve = r.curve(); !curve.x.empty())
       figure.panels.front().curves.push_back(std::move(curve));
@@ -108,7 +124,7 @@ int compare_cycles(const CompareCyclesOptions& wanted) {
   const Scene scene = read_scene(io::CaseFile(find_case(study.case_name), study.overrides));
   if (scene.designs.empty() || scene.domain)
     throw Error::input("case '" + scene.name +
-                       "' has no design that moves: there are no cycles to compare");
+                       "' has no design of a moving body; --cycles needs one");
   if (study.directory.empty()) study.directory = "runs/compare_cycles_" + scene.name;
   study.overrides.insert(study.overrides.begin(), "output.vtk=false");
   if (!scene.certify) study.overrides.emplace_back("certificate.checkpoints=0");

@@ -16,7 +16,7 @@ constexpr double kFeasible = 1e-4;  // largest relative violation of a feasible 
 io::Panel convergence(const Comparison& plan, std::span<const VariantResult> runs, bool over_time) {
   io::Panel panel;
   panel.title = over_time ? "Convergence over time" : "Convergence over state solves";
-  panel.title += ": best feasible design of a stage so far; dashed: every design";
+  panel.title += ": best feasible design of the stage so far; dashed: all designs";
   panel.x.label = over_time ? "CPU time of the design iterations [s]" : "state solves";
   panel.y = {"compliance [J]", true, {}, {}};
   std::vector<double> ends;
@@ -73,10 +73,10 @@ SolveHistory progress_of(const VariantResult& run, int stage) {
 io::Panel profile_panel(const Comparison& plan, std::span<const VariantResult> runs,
                         double tolerance) {
   io::Panel panel;
-  panel.title = "Data profile: share of the starts within " + io::to_text(100 * tolerance, 2) +
-                " % of the best compliance found from them";
+  panel.title = "Data profile: fraction of the starts within " + io::to_text(100 * tolerance, 2) +
+                " % of the best compliance from that start";
   panel.x.label = "state solves";
-  panel.y = {"share of the starts", false, 0.0, 1.05};
+  panel.y = {"fraction of the starts", false, 0.0, 1.05};
   std::vector<std::vector<SolveHistory>> all(plan.optimizers.size());
   const int stage = last_stage(runs);
   double last = 1;
@@ -106,7 +106,7 @@ io::Panel profile_panel(const Comparison& plan, std::span<const VariantResult> r
 
 std::string comparison_svg(const Comparison& plan, std::span<const VariantResult> runs) {
   io::Figure figure;
-  figure.title = plan.case_name + ": optimizers from the same " + std::to_string(plan.starts) +
+  figure.title = plan.case_name + ": comparison of optimizers, " + std::to_string(plan.starts) +
                  (plan.starts == 1 ? " start" : " starts");
   figure.width = 900;
   figure.panels = {convergence(plan, runs, false), convergence(plan, runs, true),

@@ -95,12 +95,12 @@ std::vector<std::string> summary_row(const Comparison& plan, std::span<const Var
   const std::vector<std::string> rest = {io::to_text(median(figures), 5),
                                          io::to_text(*least, 5) + " .. " + io::to_text(*most, 5),
                                          io::to_text(over, 2) + " %",
-                                         leads                       ? "best"
-                                         : told_apart(figures, best) ? "yes"
-                                                                     : "no",
+                                         leads                            ? "best"
+                                         : distinguishable(figures, best) ? "yes"
+                                                                          : "no",
                                          io::to_text(won) + starts,
                                          middle(&BodyResult::body_fitted, 5),
-                                         middle(&BodyResult::sharp_compliance, 5),
+                                         middle(&BodyResult::crisp_compliance, 5),
                                          middle(&BodyResult::compliance, 5),
                                          middle(&BodyResult::kkt, 2),
                                          middle(&BodyResult::solves, 5),
@@ -130,10 +130,10 @@ std::vector<std::pair<const VariantResult*, int>> runs_of(const Comparison& plan
 
 std::vector<std::vector<std::string>> summary_of(const Comparison& plan,
                                                  std::span<const VariantResult> runs) {
-  Rows rows = {{"optimizer", "done", "finished", "figure: median", "range", "over best",
-                "told apart", "best in", "body-fitted compliance", "sharp compliance", "compliance",
-                "kkt", "solves", "factorizations", "CPU s", "optimizer's share", "peaks",
-                "connected", "smallest feature"}};
+  Rows rows = {{"optimizer", "done", "finished", "figure (median)", "figure (range)", "above best",
+                "distinguishable", "best starts", "body-fitted compliance", "crisp compliance",
+                "compliance", "KKT residual", "state solves", "factorizations", "CPU [s]",
+                "CPU of optimizer", "peaks", "connected", "smallest feature [m]"}};
   std::vector<double> best;
   for (size_t o = 0; o < plan.optimizers.size(); ++o) {
     const auto figures =
@@ -155,13 +155,14 @@ void write_comparison(const Comparison& plan, std::span<const VariantResult> run
   io::write_file(
       stem + ".md",
       "# " + plan.case_name + "\n\n" + io::markdown_table(summary_of(plan, runs)) +
-          "\nMedians over the starts. Figure: body-fitted compliance x volume / volume allowed, "
-          "of designs that were not judged the same of the sharp ones (what is minimized, of the "
-          "sharp design, where that is no compliance). Told apart: "
-          "neither median lies within the range "
-          "of the other; where it says no, the starts spread too far for a verdict. One state "
-          "solve gives values and gradients. Peaks stand out by more than 2 % of the best "
-          "compliance so far.\n\n" +
+          "\nThe numbers are medians over the starts. The figure ranks the designs: it is "
+          "body-fitted compliance x volume / allowed volume. If the outline was not verified, the "
+          "compliance and the volume of the crisp design are used. If the objective is not a "
+          "compliance, the figure is the objective of the crisp design. Two optimizers are "
+          "distinguishable if neither median lies within the range of the other; otherwise the "
+          "results of the starts scatter too much for a verdict. One state solve gives values and "
+          "gradients. A peak exceeds its neighbours by more than 2 % of the best compliance so "
+          "far.\n\n" +
           io::markdown_table(result_rows(plan.table, runs)) + convergence_note(runs));
   io::write_file(stem + ".svg", comparison_svg(plan, runs));
 }

@@ -38,14 +38,14 @@ inline constexpr double kTheorySpread = 0.15;
 inline constexpr double kFloor = 1e-7;
 /// Refinement ratio for differences that do not decrease, as of a logarithm. The uncertainty of the
 /// limit is then the change of the value between the finest level and a level finer by this ratio.
-inline constexpr double kFarthest = 1000;
+inline constexpr double kMaxExtrapolation = 1000;
 /// Factor of the uncertainty of a series whose differences change sign or scatter. It multiplies
 /// the range of the values on the last three levels if the differences decrease, else on the last
 /// four. Source: Eca & Hoekstra (2014), J. Comput. Phys. 262, 104-130.
 inline constexpr double kSwing = 3;
 
 /// The estimated limit of a refinement series.
-struct Limit {
+struct ExtrapolatedLimit {
   bool converged = false;      ///< True if the orders agree, so that errors of levels are known.
   std::vector<double> orders;  ///< Orders of triples of levels, coarse to fine; NaN: no order.
   double order = 0;            ///< Order of the finest triple above the floor; NaN: no order.
@@ -78,7 +78,7 @@ double extrapolated(const LevelValue& coarse, const LevelValue& fine, double ord
 /// depends on the differences, divided by the logarithm of the ratio of h:
 /// - If they decrease, it is the remainder at first order (or at a lower observed order), but at
 ///   least the last difference.
-/// - If they are constant, it is the logarithmic change of kFarthest.
+/// - If they are constant, it is the logarithmic change of kMaxExtrapolation.
 /// - If they change sign or scatter, it is the range of kSwing.
 /// - If they increase, if theory says that there is no limit, or if there are fewer than three
 ///   levels, it is infinite.
@@ -88,7 +88,7 @@ double extrapolated(const LevelValue& coarse, const LevelValue& fine, double ord
 ///
 /// Source: Roache (1994), J. Fluids Eng. 116, 405-413.
 /// @param scale  scale of the values (> 0), see kFloor
-Limit limit_of(std::span<const LevelValue> levels, Approach approach,
-               const std::optional<Theory>& theory, double scale);
+ExtrapolatedLimit limit_of(std::span<const LevelValue> levels, Approach approach,
+                           const std::optional<Theory>& theory, double scale);
 
 }  // namespace flexmorph::cases

@@ -61,7 +61,7 @@ double cpu_seconds_of(pid_t pid) {
 
 /// A running child: its index in the list, and the time of the SIGINT that it received.
 struct Running {
-  size_t place = 0;
+  size_t location = 0;
   Clock::time_point begin = Clock::now(), asked = {};
   double asked_at_cpu = 0;  // CPU time at the SIGINT [s]
   bool over_time = false, told = false;
@@ -114,7 +114,7 @@ bool run_children(const std::vector<Child>& children, int jobs, const ChildLimit
   while (!running.empty() || (next < children.size() && !interrupted)) {
     while (!interrupted && next < children.size() && running.size() < static_cast<size_t>(jobs)) {
       const pid_t pid = start(children[next], limits);
-      running[pid].place = next;
+      running[pid].location = next;
       if (observer.started) observer.started(next);
       ++next;
     }
@@ -130,7 +130,7 @@ bool run_children(const std::vector<Child>& children, int jobs, const ChildLimit
       const Running child = at->second;
       at = running.erase(at);
       any = true;
-      observer.ended(child.place, ending_of(status, usage, child));
+      observer.ended(child.location, ending_of(status, usage, child));
     }
     if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }

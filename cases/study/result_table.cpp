@@ -28,8 +28,8 @@ const std::vector<NumberColumn>& number_columns() {
       {"figure", 5, [](const Entry& e) { return figure_of(e.body, e.goal); }},
       {"compliance", 5, [](const Entry& e) { return e.body.compliance; }},
       {"volume", 5, [](const Entry& e) { return e.body.volume; }},
-      {"sharp_compliance", 5, [](const Entry& e) { return e.body.sharp_compliance; }},
-      {"sharp_volume", 5, [](const Entry& e) { return e.body.sharp_volume; }},
+      {"crisp_compliance", 5, [](const Entry& e) { return e.body.crisp_compliance; }},
+      {"crisp_volume", 5, [](const Entry& e) { return e.body.crisp_volume; }},
       {"body_fitted", 5, [](const Entry& e) { return e.body.body_fitted; }},
       {"body_fitted_error", 0, [](const Entry& e) { return e.body.body_fitted_error; }},
       {"body_fitted_volume", 0, [](const Entry& e) { return e.body.body_fitted_volume; }},
@@ -81,13 +81,13 @@ void for_rows(const ResultTable& table, std::span<const VariantResult> runs, con
 }  // namespace
 
 double figure_of(const BodyResult& result, const mmc::Goal& goal) {
-  if (goal.objective == &mmc::kVolume) return result.sharp_volume;
+  if (goal.objective == &mmc::kVolume) return result.crisp_volume;
   if (!goal.objective->needs_state())
-    return value_of(result.further, "sharp_" + mmc::key_of(*goal.objective));
+    return value_of(result.further, "crisp_" + mmc::key_of(*goal.objective));
   const std::optional<double> allowed = mmc::allowed_volume(goal);
   const bool fitted = !std::isnan(result.body_fitted);
-  const double compliance = fitted ? result.body_fitted : result.sharp_compliance,
-               volume = fitted ? result.body_fitted_volume : result.sharp_volume;
+  const double compliance = fitted ? result.body_fitted : result.crisp_compliance,
+               volume = fitted ? result.body_fitted_volume : result.crisp_volume;
   return allowed ? compliance * volume / *allowed : compliance;
 }
 

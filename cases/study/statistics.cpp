@@ -15,7 +15,7 @@ double median(std::vector<double> values) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-bool told_apart(const std::vector<double>& a, const std::vector<double>& b) {
+bool distinguishable(const std::vector<double>& a, const std::vector<double>& b) {
   const auto within = [](double value, const std::vector<double>& range) {
     const auto [least, most] = std::minmax_element(range.begin(), range.end());
     return value >= *least && value <= *most;
@@ -24,16 +24,16 @@ bool told_apart(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 int peaks(std::span<const double> values, std::span<const int> stage, double share) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
+  constexpr double kUndefined = std::numeric_limits<double>::infinity();
   int count = 0;
   bool rising = false;
   // Smallest value of the stage, smallest value since the last peak, largest value of the last
   // rise.
-  double best = kNone, low = kNone, top = 0;
+  double best = kUndefined, low = kUndefined, top = 0;
   for (size_t i = 0; i < values.size(); ++i) {
     if (i > 0 && stage[i] != stage[i - 1]) {
       rising = false;
-      best = low = kNone;
+      best = low = kUndefined;
     }
     const double value = values[i];
     if (!std::isfinite(value)) continue;

@@ -13,7 +13,7 @@ double median(std::vector<double> values);
 /// Tells whether two sets of results differ by more than their spread: the median of each set lies
 /// outside the range of the other set.
 /// @throws Error (input) for an empty set.
-bool told_apart(const std::vector<double>& a, const std::vector<double>& b);
+bool distinguishable(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Counts the peaks of a history. A peak is a local maximum that exceeds the values on both sides
 /// by more than `share` of the best (smallest) value so far. The comparison restarts at every

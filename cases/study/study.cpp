@@ -71,12 +71,12 @@ VariantResult result_of(const StudyOptions& options, const Variant& variant, con
   } else if (ending.signal != 0) {
     out.status = "failed";
     out.message = "ended by signal " + std::to_string(ending.signal);
-  } else if (ending.code != 0 && ending.code != kMissed) {
+  } else if (ending.code != 0 && ending.code != kExpectationsMissed) {
     out.status = "failed";
-    if (out.message.empty()) out.message = last_words(text_of(out.directory + ".log"));
+    if (out.message.empty()) out.message = last_text(text_of(out.directory + ".log"));
   } else if (!out.done()) {
     out.status = "failed";
-    if (out.message.empty()) out.message = "there is no run.json of a finished run";
+    if (out.message.empty()) out.message = "the run folder has no run.json of a finished run";
   }
   return out;
 }
@@ -84,12 +84,12 @@ VariantResult result_of(const StudyOptions& options, const Variant& variant, con
 void make_folder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error) throw Error::input("folder '" + path + "': " + error.message());
+  if (error) throw Error::input("folder '" + path + "' cannot be created: " + error.message());
 }
 
 }  // namespace
 
-std::string last_words(const std::string& words) {
+std::string last_text(const std::string& words) {
   constexpr const char* kProgram = "flexmorph: ";
   std::istringstream in(words);
   std::string last, complaint;
@@ -192,7 +192,7 @@ std::vector<std::string> lean_overrides(const Scene& scene, Part part) {
       out.emplace_back(name);
     return out;
   }
-  for (const char* name : {"optimizer.max_iterations=0", "verify=", "output.sharp_every=0"})
+  for (const char* name : {"optimizer.max_iterations=0", "verify=", "output.crisp_every=0"})
     out.emplace_back(name);
   return out;
 }

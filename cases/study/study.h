@@ -45,14 +45,14 @@ struct BodyResult {
 
   /// Compliances [J] and volume fractions [-] of the regularized design, of the crisp design, and
   /// of uniform material.
-  double compliance = 0, volume = 0, sharp_compliance = 0, sharp_volume = 0, uniform_compliance = 0;
+  double compliance = 0, volume = 0, crisp_compliance = 0, crisp_volume = 0, uniform_compliance = 0;
 
   /// Body-fitted compliance of the outline [J] (NaN: not verified, infinite: a load acts on
   /// material without support), its estimated relative error [-], and the volume fraction of the
   /// outline [-].
   double body_fitted = 0, body_fitted_error = 0, body_fitted_volume = 0;
 
-  /// Values of further responses by name, with the prefix sharp_ for the crisp design.
+  /// Values of further responses by name, with the prefix crisp_ for the crisp design.
   mmc::Figures further;
 
   double kkt = 0;                     ///< KKT residual of the design problem [-].
@@ -75,7 +75,7 @@ struct BodyResult {
   std::vector<int> history_stage;
 
   /// Iterations at which the crisp design was evaluated, and its compliances [J].
-  std::vector<double> sharp_iteration, sharp_history;
+  std::vector<double> crisp_iteration, crisp_history;
 
   /// Tells whether the verdict on the design is "unfinished".
   bool unfinished() const;
@@ -147,7 +147,7 @@ VariantResult read_result(const StudyOptions& options, const Variant& variant);
 
 /// Returns the last error message in the terminal output of a run: the first line of the message,
 /// without the name of the program. Without an error message, it returns the last line.
-std::string last_words(const std::string& words);
+std::string last_text(const std::string& words);
 
 /// Returns the text of a file; empty if the file cannot be read.
 std::string text_of(const std::string& path);

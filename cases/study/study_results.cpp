@@ -27,17 +27,17 @@ BodyResult read_body(const nlohmann::json& r) {
   out.verdict = r.value("verdict", "");
   out.compliance = number(r, "compliance");
   out.volume = number(r, "volume");
-  out.sharp_compliance = number(r, "sharp_compliance");
-  out.sharp_volume = number(r, "sharp_volume");
+  out.crisp_compliance = number(r, "crisp_compliance");
+  out.crisp_volume = number(r, "crisp_volume");
   out.uniform_compliance = number(r, "uniform_compliance");
-  const nlohmann::json judged = r.value("body_fitted", nlohmann::json::object());
-  out.body_fitted = number(judged, "compliance");
-  if (judged.contains("compliance") && judged["compliance"] == "infinite")
+  const nlohmann::json verified = r.value("body_fitted", nlohmann::json::object());
+  out.body_fitted = number(verified, "compliance");
+  if (verified.contains("compliance") && verified["compliance"] == "infinite")
     out.body_fitted = INFINITY;
-  out.body_fitted_error = number(judged, "error");
-  out.body_fitted_volume = number(judged, "volume");
+  out.body_fitted_error = number(verified, "error");
+  out.body_fitted_volume = number(verified, "volume");
   for (const mmc::ResponseRow* row : mmc::responses())
-    for (const std::string& key : {mmc::key_of(*row), "sharp_" + mmc::key_of(*row)})
+    for (const std::string& key : {mmc::key_of(*row), "crisp_" + mmc::key_of(*row)})
       if (r.contains(key)) out.further[key] = number(r, key.c_str());
   out.kkt = number(r, "kkt");
   out.connected = r.value("connected", false);
@@ -84,7 +84,7 @@ void read_history(const std::string& path, std::vector<BodyResult>& bodies) {
                                  band = table.texts("band");
   const std::vector<double> compliance = table.numbers("compliance"),
                             violation = table.numbers("violation"),
-                            sharp = table.numbers("sharp_compliance"),
+                            crisp = table.numbers("crisp_compliance"),
                             connected = table.numbers("connected"),
                             optimizer = table.numbers("seconds_optimizer");
   const std::vector<int> evaluations = row_evaluations(table);
@@ -95,18 +95,18 @@ void read_history(const std::string& path, std::vector<BodyResult>& bodies) {
     for (size_t i = 0; i < body.size(); ++i) {
       if (body[i] != b.body) continue;
       const std::string own = cycle[i] + "," + band[i];
-      const int place = b.history_stage.empty() ? 0 : b.history_stage.back() + (own != stage);
+      const int location = b.history_stage.empty() ? 0 : b.history_stage.back() + (own != stage);
       stage = own;
-      b.history_stage.push_back(place);
+      b.history_stage.push_back(location);
       b.history_solves.push_back(solves += evaluations[i]);
       b.history_seconds.push_back(clock += seconds[i]);
       b.history_compliance.push_back(compliance[i]);
       b.history_violation.push_back(violation[i]);
       if (std::isfinite(optimizer[i])) b.seconds_optimizer += optimizer[i];
       if (connected[i] == 0) ++b.disconnected;
-      if (!std::isfinite(sharp[i])) continue;
-      b.sharp_iteration.push_back(static_cast<double>(b.history_solves.size()));
-      b.sharp_history.push_back(sharp[i]);
+      if (!std::isfinite(crisp[i])) continue;
+      b.crisp_iteration.push_back(static_cast<double>(b.history_solves.size()));
+      b.crisp_history.push_back(crisp[i]);
     }
     b.peaks = peaks(b.history_compliance, b.history_stage);
   }
@@ -114,7 +114,8 @@ void read_history(const std::string& path, std::vector<BodyResult>& bodies) {
 
 void read_run(const std::string& text, VariantResult& out) {
   const nlohmann::json run = nlohmann::json::parse(text, nullptr, false);
-  if (!run.is_object()) throw Error::input(out.directory + "/run.json: not as a run writes it");
+  if (!run.is_object())
+    throw Error::input(out.directory + "/run.json: this file is not the result of a run");
   out.status = run.value("status", "missing");
   out.message = run.value("message", "");
   out.warnings = static_cast<int>(run.value("warnings", nlohmann::json::array()).size());
@@ -122,7 +123,7 @@ void read_run(const std::string& text, VariantResult& out) {
   out.seconds_wall = number(run, "seconds_wall");
   out.peak_memory_bytes = number(run, "peak_memory_bytes");
   const std::string kind = run.value("failure", nlohmann::json::object()).value("kind", "");
-  out.ending.code = out.done() ? (out.status == "done" ? 0 : kMissed)
+  out.ending.code = out.done() ? (out.status == "done" ? 0 : kExpectationsMissed)
                                : (kind == "defect"  ? 1
                                   : kind == "input" ? 2
                                                     : 3);
@@ -160,7 +161,8 @@ std::string convergence_note(std::span<const VariantResult> runs) {
   });
   if (missed == 0) return "";
   return "\n" + std::to_string(missed) + " of " + std::to_string(runs.size()) +
-         " runs are unfinished (see \"verdict\"): their designs still improved.\n";
+         " runs are unfinished (see \"verdict\"): their designs still improved or violated a "
+         "limit.\n";
 }
 
 std::string VariantResult::words() const {

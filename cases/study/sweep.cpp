@@ -18,7 +18,7 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr size_t kMostVariants = 10'000;
+constexpr size_t kMaxVariants = 10'000;
 
 std::string trimmed(const std::string& text) {
   const size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
@@ -111,7 +111,9 @@ std::vector<mmc::Goal> goals_of(const StudyOptions& study, std::span<const Varia
     const Scene scene = read_scene(case_of(study, v));
     for (const BodyDesign& d : scene.designs) out.push_back(d.goal);
     if (scene.designs.size() != n_designs.value_or(scene.designs.size()))
-      throw Error::input("sweep: all variants have the same number of [[design]]s, or none");
+      throw Error::input(
+          "sweep: the variants have different numbers of [[design]]; all variants need "
+          "an equal number, or none");
     n_designs = scene.designs.size();
   }
   return out;
@@ -122,7 +124,7 @@ std::vector<mmc::Goal> goals_of(const StudyOptions& study, std::span<const Varia
 Varied read_varied(const std::string& text) {
   const size_t equal = text.find('=');
   const auto fail = [&](const std::string& what) {
-    throw Error::input("--vary " + text + ": " + what + "; KEY=V1,V2,... is wanted");
+    throw Error::input("--vary " + text + ": " + what + "; the form is KEY=V1,V2,...");
   };
   if (equal == std::string::npos || equal == 0) fail("there is no key");
   Varied out{trimmed(text.substr(0, equal)), {""}};
@@ -143,7 +145,7 @@ Varied read_varied(const std::string& text) {
     else
       out.values.back() += c;
   }
-  if (depth != 0 || quote != 0) fail("a bracket or a quote is open");
+  if (depth != 0 || quote != 0) fail("a bracket or a quote is not closed");
   for (std::string& value : out.values) {
     value = trimmed(value);
     if (value.empty()) fail("a value is empty");
@@ -152,15 +154,16 @@ Varied read_varied(const std::string& text) {
 }
 
 std::vector<Variant> combinations(const std::vector<Varied>& varied) {
-  if (varied.empty()) throw Error::input("sweep: at least one --vary KEY=V1,V2,... is wanted");
+  if (varied.empty()) throw Error::input("sweep: at least one --vary KEY=V1,V2,... is required");
   size_t count = 1;
   for (size_t i = 0; i < varied.size(); ++i) {
     count *= varied[i].values.size();
     for (size_t j = 0; j < i; ++j)
       if (varied[j].key == varied[i].key)
-        throw Error::input("sweep: --vary " + varied[i].key + " is there twice");
-    if (count > kMostVariants)
-      throw Error::input("sweep: more than " + std::to_string(kMostVariants) + " variants");
+        throw Error::input("sweep: --vary " + varied[i].key + " appears more than once");
+    if (count > kMaxVariants)
+      throw Error::input("sweep: the number of variants is at most " +
+                         std::to_string(kMaxVariants));
   }
   std::vector<Variant> out;
   for (size_t k = 0; k < count; ++k) {
@@ -177,7 +180,7 @@ std::vector<Variant> combinations(const std::vector<Varied>& varied) {
       v.name.append(last_part(varied[i].key)).append("=").append(plain(value));
     }
     for (const Variant& other : out)
-      if (other.name == v.name) throw Error::input("sweep: two variants are called " + v.name);
+      if (other.name == v.name) throw Error::input("sweep: two variants have the name " + v.name);
     out.push_back(std::move(v));
   }
   return out;
@@ -191,8 +194,8 @@ int sweep_case(const SweepOptions& options) {
   sweep.case_name = study.case_name;
   const int count = static_cast<int>(sweep.variants.size());
   if (options.index < 0 || options.index > count)
-    throw Error::input("sweep: --index " + std::to_string(options.index) + ": 1 to " +
-                       std::to_string(count));
+    throw Error::input("sweep: --index " + std::to_string(options.index) +
+                       ": the index of a variant is 1 to " + std::to_string(count));
   if (options.list) {
     for (int k = 0; k < count; ++k) {
       std::printf("%d", k + 1);
@@ -221,7 +224,7 @@ int sweep_case(const SweepOptions& options) {
     for (size_t v = 0; v < sweep.varied.size(); ++v) values.push_back(sweep.value(k, v));
   }
   if (!options.reference.empty() && !sweep.table.goals.empty())
-    throw Error::input("sweep: --reference is for scenes without a [[design]]");
+    throw Error::input("sweep: --reference is only for cases without a [[design]]");
   sweep.reference = read_reference(options.reference);
   const StudyOutcome outcome = run_variants(
       study, sweep.variants,

@@ -20,13 +20,14 @@ std::string history_picture(const BodyResult& b, double lowest, double highest) 
   panel.y = {"compliance [J]", true, lowest, highest};
   std::vector<double> iteration(b.history_compliance.size());
   for (size_t i = 0; i < iteration.size(); ++i) iteration[i] = static_cast<double>(i + 1);
-  panel.curves.push_back({"blurred", iteration, b.history_compliance});
+  panel.curves.push_back({"smoothed", iteration, b.history_compliance});
   // The compliance of a disconnected design is far above the range of the axis, so the legend gives
   // the number of such designs.
-  const auto above = std::count_if(b.sharp_history.begin(), b.sharp_history.end(),
+  const auto above = std::count_if(b.crisp_history.begin(), b.crisp_history.end(),
                                    [&](double c) { return c > highest; });
-  const std::string name = above > 0 ? "sharp (" + std::to_string(above) + " above)" : "sharp";
-  panel.curves.push_back({name, b.sharp_iteration, b.sharp_history, false, true});
+  const std::string name =
+      above > 0 ? "crisp (" + std::to_string(above) + " above the axis)" : "crisp";
+  panel.curves.push_back({name, b.crisp_iteration, b.crisp_history, false, true});
   figure.panels = {panel};
   return io::plot_svg(figure);
 }
@@ -39,7 +40,7 @@ std::pair<double, double> range_of(const Sweep& sweep, std::span<const VariantRe
   for (size_t k = 0; k < runs.size(); ++k) {
     if (sweep.variants[k].case_name != case_name || body >= runs[k].bodies.size()) continue;
     const BodyResult& b = runs[k].bodies[body];
-    for (const std::vector<double>* history : {&b.history_compliance, &b.sharp_history})
+    for (const std::vector<double>* history : {&b.history_compliance, &b.crisp_history})
       for (const double c : *history) {
         if (!(c > 0)) continue;
         lowest = std::min(lowest, c);
@@ -132,9 +133,10 @@ void write_designs(const Sweep& sweep, std::span<const VariantResult> runs,
   io::write_file(
       stem + ".md",
       "# " + sweep.case_name + "\n\n" + io::markdown_table(result_rows(sweep.table, runs)) +
-          "\nFigure: body-fitted compliance x volume / volume allowed, of designs without a "
-          "body-fitted one the sharp compliance (where another response is minimized, its value "
-          "of the sharp design).\n" +
+          "\nThe figure ranks the designs: it is body-fitted compliance x volume / allowed volume. "
+          "If the outline was not verified, the compliance and the volume of the crisp design "
+          "are used. If the objective is not a compliance, the figure is the objective of the "
+          "crisp design.\n" +
           convergence_note(runs));
   io::write_file(stem + ".svg", sheet_of(sweep, runs));
 }

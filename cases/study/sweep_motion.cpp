@@ -134,7 +134,7 @@ io::Figure final_figure(const std::string& title, const std::string& label,
       continue;
     const bool relative = std::all_of(panel.curves.begin(), panel.curves.end(),
                                       [](const io::Curve& each) { return each.y[0] != 0; });
-    panel.y.label = relative ? "change at the end [%]" : "at the end";
+    panel.y.label = relative ? "change of the final value [%]" : "final value";
     for (io::Curve& each : panel.curves) {
       each.markers = true;
       const double base = each.y[0];

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "fem/free_lines.h"
+#include "fem/eulerian_lines.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -45,7 +45,7 @@ class LinePowers {
 
   /// Returns the power of driven lines of elements that also have free lines [W]. The forces on
   /// these driven lines are computed like the forces on free lines.
-  double beside_free_lines() {
+  double beside_eulerian_lines() {
     double out = 0;
     for (int e = 0; e < plate_.n_elements(); ++e) {
       const auto free = plate_.free_sides(e);
@@ -60,9 +60,9 @@ class LinePowers {
       }
       if (!driven) continue;
       gather(e);
-      FreeForce force = FreeForce::Zero(local_.q.size() + kSides);
+      EulerianForce force = EulerianForce::Zero(local_.q.size() + kSides);
       for (const BodyTerm& term : body_.terms)
-        term.with_free_lines().add_free_force(e, local_, force);
+        term.with_eulerian_lines().add_eulerian_force(e, local_, force);
       for (int l = 0; l < kSides; ++l)
         out += rate[static_cast<size_t>(l)] * force[local_.q.size() + l];
     }
@@ -77,7 +77,8 @@ class LinePowers {
     const bool free = !sides.empty() && sides[kN1] >= 0;
     if (plate_.line_n(j).rate != 0 && (outer || !free))
       throw Error::input("body '" + body_.name +
-                         "': the energy balance does not know n-lines that move");
+                         "': the energy balance does not support moving material lines along m "
+                         "that are driven or on an edge");
   }
 
   void gather(int e) {
@@ -103,8 +104,8 @@ class LinePowers {
     for (const BodyTerm& term : body_.terms)
       if (term.flow) term.flow->add_line_energy(line_, local_, energy_);
     // The forces on the lines of an element with free lines are the gradient of its strain energy
-    // including the limits of integration (FreeElastic). Therefore its strain energy does not flow
-    // in.
+    // including the limits of integration (EulerianElastic). Therefore its strain energy does not
+    // flow in.
     if (!plate_.free_sides(e).empty()) energy_.stiffness.setZero();
     const double width = plate_.line_n(j + 1).value - plate_.line_n(j).value;
     const Eigen::Map<const VectorXd> weights(gauss(n_).weights.data(), n_);
@@ -164,7 +165,7 @@ Powers powers(Workspace& model, const State& x) {
   model.constraints(x, c);
   out.drive = x.lambda.dot(c.rate);
   out.feed = model.flow_power(x);
-  out.links = model.link_power(x) + model.load_power(x);
+  out.force_elements = model.force_element_power(x) + model.load_power(x);
   out.heat = model.heat_power(x);
   out.loss = model.dissipation(x);
   for (const Body& body : model.bodies()) {
@@ -172,7 +173,7 @@ Powers powers(Workspace& model, const State& x) {
     if (!plate) continue;
     LinePowers lines(body, *plate, x);
     out.inflow += lines.inflow();
-    out.feed += lines.beside_free_lines();
+    out.feed += lines.beside_eulerian_lines();
   }
   return out;
 }

@@ -18,14 +18,14 @@ struct Powers {
   /// Kinetic, strain and potential energy that entering material carries, per time [W].
   double inflow = 0;
   /// Power of force elements with damping or with shifted points of action, and of loads without a
-  /// potential [W]: Workspace::link_power() and Workspace::load_power().
-  double links = 0;
+  /// potential [W]: Workspace::force_element_power() and Workspace::load_power().
+  double force_elements = 0;
   /// Power of the prescribed temperature of hot bodies, Workspace::heat_power() [W].
   double heat = 0;
   /// Power that dissipative terms take out of the model, Workspace::dissipation() [W].
   double loss = 0;
   /// Returns the net power that enters the model [W].
-  double total() const { return drive + feed + inflow + links + heat - loss; }
+  double total() const { return drive + feed + inflow + force_elements + heat - loss; }
 };
 
 /// Returns the powers in the energy balance of a model with material flow,
@@ -39,7 +39,7 @@ struct Powers {
 /// unknowns. The equation of the free line contains the virtual work of inertia and weight at fixed
 /// material points; therefore the kinetic and the potential energy density still flow in as above.
 /// For the strain energy it contains the gradient of U including the moving limits of integration
-/// (FreeElastic); therefore dU/dt = ∂U/∂q · q̇, and the strain energy density does not appear.
+/// (EulerianElastic); therefore dU/dt = ∂U/∂q · q̇, and the strain energy density does not appear.
 ///
 /// @param x  State with consistent q̈ and λ.
 /// @throws Error (input) if an n-line moves that is driven or is an edge of its body.
@@ -60,7 +60,7 @@ class EnergyBalance {
   }
   /// Continues with the powers p after a change of the mesh. The energy that the change itself adds
   /// or removes becomes a part of the residual defect().
-  void go_on(const Powers& p) {
+  void keep_running(const Powers& p) {
     power_ = p.total();
     loss_ = p.loss;
   }
@@ -72,9 +72,9 @@ class EnergyBalance {
     power_ = p.total();
     loss_ = p.loss;
     known_ = true;
-    defect_ = e.total() - start_ - work_;
+    energy_error_ = e.total() - start_ - work_;
     largest_ = std::max({largest_, std::abs(e.total()), e.kinetic, e.strain});
-    worst_ = std::max(worst_, std::abs(defect_));
+    worst_ = std::max(worst_, std::abs(energy_error_));
   }
   /// Adds a step that ends at time t [s] and whose powers p belong to its middle, by the mid-point
   /// rule.
@@ -87,14 +87,14 @@ class EnergyBalance {
   /// Returns the energy that was dissipated since the start [J].
   double dissipated() const { return dissipated_; }
   /// Returns the residual of the balance: energy - energy at the start - work [J].
-  double defect() const { return defect_; }
+  double energy_error() const { return energy_error_; }
   /// Returns the largest residual so far, relative to the largest energy so far.
   double relative() const { return worst_ / std::max(largest_, 1e-300); }
 
  private:
   bool known_ = false;  // true if power_ and loss_ belong to the time t_
   double t_ = 0, power_ = 0, loss_ = 0, start_ = 0, work_ = 0, dissipated_ = 0;
-  double defect_ = 0, largest_ = 0, worst_ = 0;
+  double energy_error_ = 0, largest_ = 0, worst_ = 0;
 };
 
 }  // namespace flexmorph::fem

@@ -28,7 +28,7 @@ struct HotBody {
 constexpr double kSameGrowth = 1e-6;
 
 /// Returns the growth γ of a straight root line: least squares fit of u_y = γ (Y - Ȳ).
-double growth_of_root(const Body& body, const State& x, const FrameMotion& hub,
+double moving_root_of(const Body& body, const State& x, const FrameMotion& hub,
                       const Eigen::Matrix2d& to_hub, const Grid& grid, double root) {
   const double middle = grid.y0 + 0.5 * grid.height;
   double moment = 0, second = 0;
@@ -67,14 +67,14 @@ double part_of_growth(double growth, double stretch) {
 
 /// Returns the growth of a hot body from that of its root line.
 /// @throws Error (numerical) if the thermal stretch is not positive.
-HotBody hot_body(const Body& body, const State& x, double growth_of_root) {
+HotBody hot_body(const Body& body, const State& x, double moving_root_of) {
   HotBody out;
   out.along = body.heat->stretch(x.t);
   out.stretch = out.along.value - 1;
   if (!std::isfinite(out.stretch) || !(out.along.value > 0))
     throw Error::numerical("esl: the thermal stretch of body '" + body.name + "' is " +
-                           std::to_string(out.along.value) + "; it is positive");
-  const double part = part_of_growth(growth_of_root, out.stretch);
+                           std::to_string(out.along.value) + "; it must be positive");
+  const double part = part_of_growth(moving_root_of, out.stretch);
   out.held = (1 - part) * out.stretch;
   out.across = {1 + part * out.stretch, part * out.along.rate, part * out.along.acceleration};
   return out;
@@ -138,7 +138,7 @@ void add_masses(const Grid& grid, std::span<const AttachedMass> masses, EslSet& 
 int node_at(const Grid& grid, const Vec2& point) {
   const double i = (point.x() - grid.x0) / grid.dx(), j = (point.y() - grid.y0) / grid.dy();
   if (std::abs(i - std::round(i)) > 1e-6 || std::abs(j - std::round(j)) > 1e-6)
-    throw Error::input("masses, pins and forces must sit on nodes of the design mesh");
+    throw Error::input("masses, pins and forces must be at nodes of the design mesh");
   return grid.node(static_cast<int>(std::lround(i)), static_cast<int>(std::lround(j)));
 }
 
@@ -159,7 +159,7 @@ std::vector<AttachedForce> joint_forces(Workspace& model, const State& x, const 
   return out;
 }
 
-EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& growth,
+EslSet equivalent_static_load(Workspace& model, const State& x, const MovingRoot& growth,
                               const Grid& grid, std::span<const AttachedMass> masses,
                               std::span<const AttachedForce> forces, const VectorXd& gravity) {
   const Body& body = model.body(growth.body);
@@ -169,7 +169,7 @@ EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& gr
   const Vec2 g = gravity.size() > 0 ? Vec2(to_hub * gravity.head<2>()) : Vec2(0, 0);
 
   std::optional<HotBody> hot;
-  if (body.heat) hot = hot_body(body, x, growth_of_root(body, x, hub, to_hub, grid, root.value));
+  if (body.heat) hot = hot_body(body, x, moving_root_of(body, x, hub, to_hub, grid, root.value));
   const auto continued = [&](const Vec2& at) {
     return hot ? grown_acceleration(hub, to_hub, at, root, *hot)
                : rigid_acceleration(hub, to_hub, at, root);

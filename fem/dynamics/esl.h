@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/dynamics/mesh_changes/growth.h"
+#include "fem/dynamics/mesh_changes/moving_root.h"
 #include "fem/esl_set.h"
 
 namespace flexmorph::fem {
@@ -81,7 +81,7 @@ std::vector<AttachedForce> joint_forces(Workspace& model, const State& x, const 
 ///         stretch s is not positive.
 ///
 /// Source: P (31), (32); fem/README.md, Equivalent static loads.
-EslSet equivalent_static_load(Workspace& model, const State& x, const Growth& growth,
+EslSet equivalent_static_load(Workspace& model, const State& x, const MovingRoot& growth,
                               const Grid& grid, std::span<const AttachedMass> masses,
                               std::span<const AttachedForce> forces, const VectorXd& gravity);
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fem/dynamics/mesh_changes/growth.h"
+#include "fem/dynamics/mesh_changes/moving_root.h"
 #include "fem/solve/linear_solver.h"
 #include "fem/solve/scaled_constraints.h"
 #include "geometry/text.h"
@@ -43,10 +43,11 @@ class Balance {
       factored = k == 1 || contracts;
       last = now;
     }
-    throw Error::numerical(formatted("the change of the mesh at t = %.6g s: no balance of forces, "
-                                     "corrections against the size of the model ",
-                                     x_.t) +
-                           history + "more elements, or a larger body.flow.max_length, help");
+    throw Error::numerical(
+        formatted("The forces could not be balanced after the change of the mesh at t = %.6g s. "
+                  "Corrections relative to the size of the model: ",
+                  x_.t) +
+        history + "use more elements or a larger body.flow.max_length.");
   }
 
  private:
@@ -65,8 +66,9 @@ class Balance {
         if (entry.row() < n) entry.valueRef() /= scales_[entry.row()];
       }
     if (analyze) solver_.analyze(kkt_);
-    constexpr double kMiss = 0.02;  // Newton's method removes this error of the factorization
-    solver_.factorize(kkt_, kMiss);
+    constexpr double kFactorError =
+        0.02;  // Newton's method removes this error of the factorization
+    solver_.factorize(kkt_, kFactorError);
   }
 
   /// Corrects the state. @returns the largest displacement of the correction [m].
@@ -88,7 +90,7 @@ class Balance {
   VectorXd scales_, force_, right_, solution_;
   Constraints constraints_;
   SparseMatrix kkt_;
-  UnsymmetricSolver solver_;
+  DirectSolver solver_;
 };
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 #include "fem/dynamics/force_balance.h"
 #include "fem/dynamics/integrators/dense_output.h"
-#include "fem/dynamics/mesh_changes/landings.h"
-#include "fem/dynamics/motion_memory.h"
+#include "fem/dynamics/mesh_changes/event_times.h"
+#include "fem/dynamics/motion_archive.h"
 #include "fem/dynamics/motion_watch.h"
 
 namespace flexmorph::fem {
@@ -21,10 +21,10 @@ namespace {
 /// One call of integrate(), with all variables of the motion.
 class Run {
  public:
-  Run(Workspace& model, std::span<const Growth> growths, const MotionSettings& settings,
+  Run(Workspace& model, std::span<const MovingRoot> moving_roots, const MotionSettings& settings,
       const MotionObserver& observe)
       : model_(model),
-        growths_(growths),
+        moving_roots_(moving_roots),
         settings_(settings),
         observe_(observe),
         integrator_(
@@ -37,19 +37,21 @@ class Run {
     if (settings_.memory.empty())
       begin();
     else
-      go_on();
+      keep_running();
     const double tiny = kTiny * settings_.step;
-    const std::vector<Landing> all = landings(settings_, kTiny * settings_.step);
-    for (; next_landing_ < all.size() && !is_enough(); ++next_landing_) {
-      Landing landing = all[next_landing_];
-      if (!leg_.open && (landing.t <= x_.t + tiny || landing.t > settings_.end + tiny)) continue;
-      landing.t = std::min(landing.t, settings_.end);
-      while (!is_enough() && (leg_.open || x_.t < landing.t - tiny)) to_next_event(landing);
+    const std::vector<EventTime> all = event_times(settings_, kTiny * settings_.step);
+    for (; next_event_time_ < all.size() && !is_enough(); ++next_event_time_) {
+      EventTime event_time = all[next_event_time_];
+      if (!segment_.open && (event_time.t <= x_.t + tiny || event_time.t > settings_.end + tiny))
+        continue;
+      event_time.t = std::min(event_time.t, settings_.end);
+      while (!is_enough() && (segment_.open || x_.t < event_time.t - tiny))
+        to_next_event(event_time);
     }
     if (!is_enough()) between_steps();
     result_.final = x_;
     result_.counts = integrator_->counts();
-    result_.energy_defect = balance_.relative();
+    result_.energy_error = balance_.relative();
     result_.energy_gain = watch_.energy_gain();
     if (settings_.condition) result_.condition = integrator_->condition();
     return std::move(result_);
@@ -58,7 +60,7 @@ class Run {
  private:
   void begin() {
     // Drives need not be defined after the end of the motion.
-    x_ = start_state(model_, growths_, 0, settings_.start, settings_.placement,
+    x_ = start_state(model_, moving_roots_, 0, settings_.start, settings_.body_poses,
                      std::min(1e-4, 0.5 * settings_.end));
     const VectorXd given = x_.v;
     integrator_->project_velocity(x_);
@@ -77,32 +79,32 @@ class Run {
     control_->begin(settings_.adaptive->first > 0 ? settings_.adaptive->first : first);
   }
 
-  void go_on() {
-    Memory memory(settings_.memory);
-    remember(memory);
+  void keep_running() {
+    Archive memory(settings_.memory);
+    archive(memory);
     if (settings_.keep == Keep::steps) keep(x_, false);
   }
 
   bool is_enough() const { return x_.t >= settings_.until - kTiny * settings_.step; }
 
   /// Saves or restores all variables on which the next steps or the result of the motion depend.
-  void remember(Memory& memory) {
+  void archive(Archive& memory) {
     memory(x_, result_);
-    if (!memory.puts_back()) model_.prepare(x_);
-    remember_meshes(memory, model_, growths_);
+    if (!memory.is_restoring()) model_.prepare(x_);
+    archive_meshes(memory, model_, moving_roots_);
     model_.prepare(x_);
-    integrator_->remember(memory);
-    watch_.remember(memory);
+    integrator_->archive(memory);
+    watch_.archive(memory);
     if (control_) memory(*control_);
-    memory(powers_, balance_, leg_, next_landing_, next_between_);
-    if (dense_) dense_->remember(memory);
+    memory(powers_, balance_, segment_, next_event_time_, next_between_);
+    if (dense_) dense_->archive(memory);
   }
 
   void between_steps() {
     if (settings_.between_steps && settings_.keep == Keep::nothing)
       settings_.between_steps([this] {
-        Memory memory;
-        remember(memory);
+        Archive memory;
+        archive(memory);
         return memory.bytes();
       });
   }
@@ -124,8 +126,8 @@ class Run {
   void see(const State& x, const Energies& e, bool stop) {
     keep(x, stop);
     model_.prepare(x);
-    observe_({model_, x, e, powers_, balance_.work(), balance_.dissipated(), balance_.defect(),
-              stop, result_});
+    observe_({model_, x, e, powers_, balance_.work(), balance_.dissipated(),
+              balance_.energy_error(), stop, result_});
   }
 
   void keep(const State& x, bool stop) {
@@ -137,8 +139,8 @@ class Run {
   /// Prepares adaptive steps.
   void prepare_to_adapt() {
     if (integrator_->step_mean())
-      throw Error::input("adaptive steps need \"generalized_alpha\": \"" + settings_.integrator +
-                         "\" does not estimate its local error");
+      throw Error::input("adaptive steps need integrator \"generalized_alpha\": \"" +
+                         settings_.integrator + "\" does not estimate its local error");
     control_.emplace(*settings_.adaptive, settings_.end);
     dense_.emplace(model_);
     between_ = settings_.stops;
@@ -146,21 +148,21 @@ class Run {
   }
 
   /// Integration segment up to an event time, or up to the first change of a mesh before it.
-  struct Leg {
+  struct IntegrationSegment {
     bool open = false;
     double begin = 0, end = 0;
     int steps = 0, done = 0;  // numbers of all equal steps and of those done
-    bool is_stop = false, is_kink = false;
+    bool is_stop = false, is_discontinuity = false;
     int changing = -1;  // index of the growth that changes its mesh at the end; -1: none
     MeshChange change = MeshChange::insertion;
   };
 
-  void plan(const Landing& landing) {
-    const double stop = landing.t;
+  void plan(const EventTime& event_time) {
+    const double stop = event_time.t;
     NextChange next{stop, MeshChange::insertion};
     int changing = -1;
-    for (size_t i = 0; i < growths_.size(); ++i) {
-      const Growth& g = growths_[i];
+    for (size_t i = 0; i < moving_roots_.size(); ++i) {
+      const MovingRoot& g = moving_roots_[i];
       const NextChange n = next_change(model_.body(g.body), g, x_.t, stop, settings_.step);
       if (n.t < next.t || (n.t == next.t && changing < 0)) {
         next = n;
@@ -170,35 +172,44 @@ class Run {
     // A change this close to a stop is moved onto it: so short a step would give only round-off.
     if (std::abs(next.t - stop) < kTiny * settings_.step) next.t = stop;
     const bool there = next.t == stop;
-    leg_ = {true,     x_.t,       next.t, 0, 0, landing.stop && there, landing.kink && there,
-            changing, next.change};
+    segment_ = {true,
+                x_.t,
+                next.t,
+                0,
+                0,
+                event_time.stop && there,
+                event_time.discontinuity && there,
+                changing,
+                next.change};
     // No step is made if a limit is exceeded already (a boundary element too long at the start).
     if (const double way = next.t - x_.t; way > kTiny * settings_.step)
-      leg_.steps = std::max(1, static_cast<int>(std::ceil(way / settings_.step - 1e-6)));
+      segment_.steps = std::max(1, static_cast<int>(std::ceil(way / settings_.step - 1e-6)));
   }
 
   /// Returns the time at which the steps of the segment end.
-  double end_of_steps() const { return leg_.is_kink ? just_before(leg_.end) : leg_.end; }
+  double end_of_steps() const {
+    return segment_.is_discontinuity ? just_before(segment_.end) : segment_.end;
+  }
 
-  void to_next_event(const Landing& landing) {
-    if (!leg_.open) plan(landing);
-    if (leg_.steps > 0 && control_)
+  void to_next_event(const EventTime& event_time) {
+    if (!segment_.open) plan(event_time);
+    if (segment_.steps > 0 && control_)
       adaptive_steps();
     else
       equal_steps();
     if (is_enough()) return;
-    leg_.open = false;
-    const bool at_end = leg_.end >= settings_.end - kTiny * settings_.step;
-    if (leg_.changing >= 0 && !at_end)
-      execute(growths_[static_cast<size_t>(leg_.changing)], leg_.change);
+    segment_.open = false;
+    const bool at_end = segment_.end >= settings_.end - kTiny * settings_.step;
+    if (segment_.changing >= 0 && !at_end)
+      execute(moving_roots_[static_cast<size_t>(segment_.changing)], segment_.change);
   }
 
   /// Makes the remaining equal steps of the segment, none longer than the step of the settings.
   void equal_steps() {
-    const double begin = leg_.begin, end = end_of_steps();
-    const int n = leg_.steps;
-    while (leg_.done < n && !is_enough()) {
-      const int k = ++leg_.done;
+    const double begin = segment_.begin, end = end_of_steps();
+    const int n = segment_.steps;
+    while (segment_.done < n && !is_enough()) {
+      const int k = ++segment_.done;
       const double t = k == n ? end : begin + (end - begin) * k / n;
       double last = x_.t;
       watching_joints([&] {
@@ -207,7 +218,7 @@ class Run {
           watch_.see_equal(x_, h, (end - begin) / n);
           const bool there = x.t >= end;
           last = x.t;
-          accepted(h, leg_.is_stop && there, leg_.is_kink && there);
+          accepted(h, segment_.is_stop && there, segment_.is_discontinuity && there);
         });
       });
       if (is_enough()) return;
@@ -235,8 +246,8 @@ class Run {
       control_->accepted(h, tried.error, tried.iterations);
       if (h == left) x_.t = end;
       const bool there = x_.t == end;
-      const bool at_stop = see_between(tiny) || (leg_.is_stop && there);
-      accepted(h, at_stop, leg_.is_kink && there);
+      const bool at_stop = see_between(tiny) || (segment_.is_stop && there);
+      accepted(h, at_stop, segment_.is_discontinuity && there);
       if (x_.t < settings_.end - tiny) changes_due();
       between_steps();
     }
@@ -268,24 +279,24 @@ class Run {
   }
 
   /// Records an accepted step of length h and calls the observer.
-  void accepted(double h, bool at_stop, bool at_kink) {
-    const State& x = at_stop && control_ && !at_kink ? settled() : x_;
+  void accepted(double h, bool at_stop, bool at_discontinuity) {
+    const State& x = at_stop && control_ && !at_discontinuity ? settled() : x_;
     Energies e = model_.energies(x);
     balance(x, e);
     watch_.see_drift(x_);
-    if (at_kink)
-      e = cross_kink();
+    if (at_discontinuity)
+      e = cross_discontinuity();
     else if (at_stop && integrator_->step_mean())
       integrator_->make_consistent(x_);
     see(x, e, at_stop);
-    watch_.see(x_, e, powers_, balance_.defect(), h, at_stop, steps());
+    watch_.see(x_, e, powers_, balance_.energy_error(), h, at_stop, steps());
   }
 
   /// Continues from just before a discontinuity to the values after it. @returns the energies
   /// there.
-  Energies cross_kink() {
-    x_.t = leg_.end;
-    integrator_->cross_kink(x_);
+  Energies cross_discontinuity() {
+    x_.t = segment_.end;
+    integrator_->cross_discontinuity(x_);
     const Energies e = model_.energies(x_);
     powers_ = measure(x_);
     balance_.add(x_.t, e, powers_);
@@ -302,7 +313,7 @@ class Run {
   /// Executes the changes of meshes that are due at free root lines.
   void changes_due() {
     model_.prepare(x_);
-    for (const Growth& g : growths_)
+    for (const MovingRoot& g : moving_roots_)
       if (const auto change = change_due(model_.body(g.body), g)) execute(g, *change);
   }
 
@@ -320,7 +331,7 @@ class Run {
 
   int steps() const { return integrator_->counts().steps; }
 
-  void execute(const Growth& growth, MeshChange change) {
+  void execute(const MovingRoot& growth, MeshChange change) {
     Body* body = nullptr;
     for (Body& b : model_.bodies())
       if (b.name == growth.body) body = &b;
@@ -344,7 +355,7 @@ class Run {
     result_.events.push_back(event);
     integrator_->project_velocity(x_);
     powers_ = measure(x_);
-    balance_.go_on(powers_);
+    balance_.keep_running(powers_);
     if (settings_.keep == Keep::nothing) return;
     Trajectory& kept = result_.trajectory;
     kept.changes.push_back(
@@ -355,7 +366,7 @@ class Run {
   static constexpr double kTiny = 1e-6;  // tolerance of times, as a fraction of a step
 
   Workspace& model_;
-  std::span<const Growth> growths_;
+  std::span<const MovingRoot> moving_roots_;
   const MotionSettings& settings_;
   const MotionObserver& observe_;
   std::unique_ptr<Integrator> integrator_;
@@ -368,17 +379,17 @@ class Run {
   State before_, within_;  // start of the step, and a state within it
   std::vector<double> between_;
   size_t next_between_ = 0;
-  Leg leg_;
-  size_t next_landing_ = 0;
+  IntegrationSegment segment_;
+  size_t next_event_time_ = 0;
   MotionResult result_;
   MotionWatch watch_;
 };
 
 }  // namespace
 
-MotionResult integrate(Workspace& model, std::span<const Growth> growths,
+MotionResult integrate(Workspace& model, std::span<const MovingRoot> moving_roots,
                        const MotionSettings& settings, const MotionObserver& observe) {
-  return Run(model, growths, settings, observe).go();
+  return Run(model, moving_roots, settings, observe).go();
 }
 
 }  // namespace flexmorph::fem

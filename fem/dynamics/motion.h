@@ -19,7 +19,7 @@ namespace flexmorph::fem {
 
 /// A function that returns an archive (checkpoint) from which the running motion can be continued.
 /// It does not change the motion.
-using TakeDown = std::function<std::string()>;
+using SaveCheckpoint = std::function<std::string()>;
 
 /// Settings of the time integration of one motion.
 struct MotionSettings {
@@ -35,7 +35,7 @@ struct MotionSettings {
   Start start = Start::prestretched;
   /// Motion of the bodies that no hub carries (hub: the rigid frame that carries a body; its motion
   /// is prescribed, or it is fixed to a rigid body); empty if there are no such bodies.
-  Placement placement;
+  BodyPoses body_poses;
   /// Name of the integrator, see make_integrator().
   std::string integrator = "generalized_alpha";
   /// Settings of the integrator generalized_alpha.
@@ -52,7 +52,7 @@ struct MotionSettings {
   /// Discontinuities of drives and loads [s], in any order: each is the first time at which the
   /// function after the discontinuity holds. Steps end at these times. The last step uses the
   /// function before the discontinuity, and the motion continues with the function after it.
-  std::vector<double> kinks;
+  std::vector<double> discontinuities;
   /// True if the energy balance is computed (this costs a few percent of the time).
   bool balance = true;
   /// Energy below which differences are round-off [J]. If it is given, a motion with energy balance
@@ -63,9 +63,9 @@ struct MotionSettings {
   bool condition = false;
   /// States that are stored in the trajectory of the result.
   Keep keep = Keep::nothing;
-  /// Archive from which the motion continues: the result of a TakeDown in the same motion of the
-  /// same model; empty: the motion starts at t = 0. The continued motion is bit for bit the same as
-  /// without interruption, whenever and however often archives were made.
+  /// Archive from which the motion continues: the result of a SaveCheckpoint in the same motion of
+  /// the same model; empty: the motion starts at t = 0. The continued motion is bit for bit the
+  /// same as without interruption, whenever and however often archives were made.
   std::string memory;
   /// End of a part of the motion [s]: integration stops after the first step that ends at or after
   /// this time, before a change of the mesh that follows there. Not for adaptive steps.
@@ -73,7 +73,7 @@ struct MotionSettings {
   /// Callback at the end of every step, but not after the substeps into which a failure of Newton's
   /// method divides it, and at the end of the motion. It may throw. It is called only if no
   /// trajectory is stored.
-  std::function<void(const TakeDown&)> between_steps;
+  std::function<void(const SaveCheckpoint&)> between_steps;
 };
 
 /// A change of the mesh, and the jumps of the state that it caused.
@@ -111,7 +111,7 @@ struct MotionStep {
   /// Energy that dissipative terms have taken out of the model since the start [J].
   double dissipated = 0;
   /// Residual of the energy balance: energy - energy at the start - work [J].
-  double defect = 0;
+  double energy_error = 0;
   /// True if x.t is one of MotionSettings::stops, or the end.
   bool stop = false;
   /// Result so far: the change of the velocities at the start, and all warnings since.
@@ -134,7 +134,7 @@ struct MotionResult {
   /// All changes of the mesh in the order of time.
   std::vector<MeshEvent> events;
   /// Largest residual of the energy balance, relative to the largest energy.
-  double energy_defect = 0;
+  double energy_error = 0;
   /// Largest energy that a motion without drives has gained; zero if the motion was not checked.
   EnergyGain energy_gain;
   /// Largest change of a velocity at the start that the joints required, as a displacement [m/s].
@@ -165,14 +165,15 @@ struct MotionResult {
 /// Steps end at stops (see MotionSettings), at discontinuities and at changes of the mesh. A change
 /// of the mesh at the end of the motion is not executed.
 ///
-/// @param growths  Moving-root mesh control of the plates: when elements at a moving root are split
+/// @param moving_roots  Moving-root mesh control of the plates: when elements at a moving root are
+/// split
 ///                 or merged.
 /// @throws Error (input) if adaptive steps are requested from an integrator without error estimate.
 /// @throws Error (numerical) if a step fails, if the material collapses, or if a motion without
 ///         drives has gained more than EnergyGrowth::kLargest. The observer has received every step
 ///         before the failure. If rigid bodies are near a singular position, the message of a
 ///         failed step names the joints.
-MotionResult integrate(Workspace& model, std::span<const Growth> growths,
+MotionResult integrate(Workspace& model, std::span<const MovingRoot> moving_roots,
                        const MotionSettings& settings, const MotionObserver& observe);
 
 /// Returns the linear momentum of the bodies' own mass [kg m/s]; z = 0 in the plane.

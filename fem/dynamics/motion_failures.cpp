@@ -7,27 +7,25 @@ namespace flexmorph::fem {
 Error collapsed(double t, int step, double ratio) {
   return Error::numerical(
       formatted("motion: the material has collapsed at t = %.6g s, step %d: smallest area ratio "
-                "|r_m x r_n| = %.2e. It is too soft for its loads or too hot, or time.step is too "
-                "long for what changes in it: then a smaller one helps.",
+                "|r_m x r_n| = %.2e. The material is too soft for its loads or too hot, or "
+                "time.step is too long; then reduce it.",
                 t, step, ratio));
 }
 
-Error gained_energy(const MotionSettings& settings, double t, int step, double defect,
+Error gained_energy(const MotionSettings& settings, double t, int step, double energy_error,
                     const EnergyGain& gain, bool has_joints) {
   constexpr double kWeaklyDamped = 0.98;  // rho_inf; above, multipliers may alternate
-  std::string remedy = "A smaller time.step";
+  std::string remedy = "Reduce time.step";
   if (settings.integrator == "generalized_alpha") {
     if (settings.alpha.rho_inf > kWeaklyDamped && has_joints)
-      remedy += ", or a smaller time.rho_inf where joint forces alternate from step to step,";
-    remedy += " helps; time.integrator = \"energy_momentum\" keeps the energy exactly";
-  } else {
-    remedy += " helps";
+      remedy += ", or reduce time.rho_inf if joint forces alternate from step to step";
+    remedy += "; time.integrator = \"energy_momentum\" conserves the energy exactly";
   }
   const std::string text = formatted(
-      "motion: no drive brings energy in, but by t = %.6g s, step %d, the energy has grown by "
-      "%.3g J, %.0f %% of the largest (by more than 10 %% from t = %.6g s on): the "
-      "steps do not follow the motion. ",
-      t, step, defect, 100 * gain.part, gain.time);
+      "motion: the energy has grown by %.3g J until t = %.6g s, step %d, although no drive "
+      "supplies energy. This is %.0f %% of the largest energy, and more than 10 %% since t = %.6g "
+      "s. The time steps are too long for the motion. ",
+      energy_error, t, step, 100 * gain.part, gain.time);
   return Error::numerical(text + remedy + ".");
 }
 

@@ -15,7 +15,7 @@ Error collapsed(double t, int step, double ratio);
 /// @param step        Number of accepted steps.
 /// @param defect      Residual of the energy balance [J].
 /// @param has_joints  True if the model has constraints.
-Error gained_energy(const MotionSettings& settings, double t, int step, double defect,
+Error gained_energy(const MotionSettings& settings, double t, int step, double energy_error,
                     const EnergyGain& gain, bool has_joints);
 
 }  // namespace flexmorph::fem

@@ -24,18 +24,18 @@ void MotionWatch::begin(const Energies& e) {
     growth_.begin(e, *settings_.energy_round_off);
 }
 
-void MotionWatch::remember(Memory& memory) {
-  multipliers_.remember(memory, model_);
+void MotionWatch::archive(Archive& memory) {
+  multipliers_.archive(memory, model_);
   memory(growth_, since_material_, since_joints_, was_near_);
 }
 
-void MotionWatch::see(const State& x, const Energies& e, const Powers& p, double defect, double h,
-                      bool at_stop, int steps) {
+void MotionWatch::see(const State& x, const Energies& e, const Powers& p, double energy_error,
+                      double h, bool at_stop, int steps) {
   // Otherwise Newton's method would fail later without a reason in its message, see EnergyGrowth.
   if (growth_.is_watched()) {
-    growth_.see(x.t, e, p, defect);
+    growth_.see(x.t, e, p, energy_error);
     if (growth_.is_too_large())
-      throw gained_energy(settings_, x.t, steps, defect, growth_.gain(),
+      throw gained_energy(settings_, x.t, steps, energy_error, growth_.gain(),
                           model_.n_constraints() > 0);
   }
   if (at_stop || ++since_material_ == kMaterialEvery) see_material(x, steps);
@@ -77,7 +77,8 @@ std::optional<Error> MotionWatch::with_joints(const Error& error, const State& x
   if (!joints_ || error.kind() != Error::Kind::numerical) return {};
   const Conditioning now = joints_->look(x);
   if (now.condition < kSingular) return {};
-  return Error::numerical(std::string(error.what()) + " Dead centre? " + describe(now));
+  return Error::numerical(std::string(error.what()) +
+                          " The mechanism may be at a dead centre: " + describe(now));
 }
 
 void MotionWatch::see_joints(const State& x) {

@@ -17,8 +17,8 @@ class MotionWatch {
 
   /// Starts the check of the energy with the energies of the initial state.
   void begin(const Energies& e);
-  /// Saves or restores the state of the checks (geometry/memory.h).
-  void remember(Memory& memory);
+  /// Saves or restores the state of the checks (geometry/archive.h).
+  void archive(Archive& memory);
 
   /// Checks an accepted step that ended at x.
   /// @param e, p     Energies and powers of the step.
@@ -28,7 +28,7 @@ class MotionWatch {
   /// @param steps    Number of accepted steps.
   /// @throws Error (numerical) if the material has turned inside out, or if a motion without drives
   ///         has gained more than EnergyGrowth::kLargest.
-  void see(const State& x, const Energies& e, const Powers& p, double defect, double h,
+  void see(const State& x, const Energies& e, const Powers& p, double energy_error, double h,
            bool at_stop, int steps);
   /// Records an accepted step of an integration segment with equal steps.
   /// @param h      Length of the step [s].

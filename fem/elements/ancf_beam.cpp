@@ -23,9 +23,10 @@ Row6 shapes_y(double xi) { return {0, 0, 1 - xi, 0, 0, xi}; }
 
 }  // namespace
 
-std::vector<double> even_nodes(double length, int n_elements) {
+std::vector<double> uniform_nodes(double length, int n_elements) {
   if (!(length > 0) || !std::isfinite(length) || n_elements < 1)
-    throw Error::input("ancf_beam: a positive length [m] and at least one element");
+    throw Error::input(
+        "ancf_beam: the length must be positive [m], and there must be at least one element");
   std::vector<double> x;
   for (int i = 0; i <= n_elements; ++i) x.push_back(length * i / n_elements);
   return x;
@@ -37,7 +38,8 @@ std::vector<BeamNode> curve_reference(const std::function<CentreLine(double)>& c
   for (const double at : x) {
     const CentreLine c = curve(at);
     const double length = c.tangent.norm();
-    if (!(length > 0)) throw Error::input("ancf_beam: a centre line whose tangent has no length");
+    if (!(length > 0))
+      throw Error::input("ancf_beam: the tangent of the centre line has the length 0");
     const Vec2 normal = Vec2(-c.tangent.y(), c.tangent.x()) / length;
     out.push_back({c.point, c.tangent, c.height_ratio * normal});
   }
@@ -54,11 +56,11 @@ std::vector<BeamNode> arc_reference(double length, double angle, int n_elements)
         const Vec2 middle(std::cos(turn / 2), std::sin(turn / 2));
         return CentreLine{x * chord * middle, Vec2(std::cos(turn), std::sin(turn)), 1};
       },
-      even_nodes(length, n_elements));
+      uniform_nodes(length, n_elements));
 }
 
 AncfBeam::AncfBeam(double length, double height, int n_elements)
-    : AncfBeam(even_nodes(length, n_elements), height) {}
+    : AncfBeam(uniform_nodes(length, n_elements), height) {}
 
 AncfBeam::AncfBeam(std::vector<double> x, double height, std::vector<BeamNode> reference)
     : Element(Kind<AncfBeam>{}, {.dim = 2,
@@ -69,17 +71,17 @@ AncfBeam::AncfBeam(std::vector<double> x, double height, std::vector<BeamNode> r
       height_(height),
       straight_(reference.empty()) {
   if (!(height > 0) || !std::isfinite(height))
-    throw Error::input("ancf_beam: its height is positive [m]");
-  if (x_.size() < 2) throw Error::input("ancf_beam: at least two nodes");
+    throw Error::input("ancf_beam: the height must be positive [m]");
+  if (x_.size() < 2) throw Error::input("ancf_beam: there must be at least two nodes");
   for (size_t i = 0; i < x_.size(); ++i)
     if (!std::isfinite(x_[i]) || (i > 0 && !(x_[i] > x_[i - 1])))
-      throw Error::input("ancf_beam: coordinates of nodes increase along the beam");
+      throw Error::input("ancf_beam: the coordinates of the nodes must increase along the beam");
   if (straight_)
     for (const double at : x_) reference.push_back({Vec2(at, 0), Vec2(1, 0), Vec2(0, 1)});
   if (reference.size() != x_.size())
     throw Error::input("ancf_beam: " + std::to_string(reference.size()) +
-                       " nodes of the reference configuration, and " + std::to_string(x_.size()) +
-                       " coordinates");
+                       " nodes are given for the reference configuration, but " +
+                       std::to_string(x_.size()) + " coordinates");
   reference_.resize(n_vectors(), 2);
   for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(x_.size()); ++i) {
     const BeamNode& node = reference[static_cast<size_t>(i)];
@@ -156,7 +158,8 @@ std::vector<NodeVectors> AncfBeam::edge(const std::string& name) const {
 
 void AncfBeam::resize(Eigen::Index n_points, Tabulate what, ShapeTable& out) const {
   if (what == Tabulate::curvature || what == Tabulate::curvature_rates)
-    throw Error::input("a beam has no second derivatives: terms of bending are those of plates");
+    throw Error::input(
+        "a beam has no second derivatives: bending terms are only available for plates");
   const bool gradient = what == Tabulate::gradient || what == Tabulate::gradient_rates;
   out.weight.resize(n_points);
   out.material.resize(static_cast<size_t>(n_points));
@@ -195,10 +198,11 @@ void AncfBeam::fill(int e, double xi, double y, Eigen::Index p, ShapeTable& out)
   }
 }
 
-void AncfBeam::tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
-                        ShapeTable& out) const {
-  if (kind != FactorKind::none && !factors.uniform())
-    throw Error::input("a beam takes no factors of a design: its material is uniform");
+void AncfBeam::tabulate(int e, int degree, Tabulate what, const ScaleFactors& factors,
+                        ScaleFactorKind kind, ShapeTable& out) const {
+  if (kind != ScaleFactorKind::none && !factors.uniform())
+    throw Error::input(
+        "a beam has uniform material: it does not support scale factors of a design");
   // det J_o has degree 3 along the beam and degree 1 across it.
   const int n_along = degree / 2 + (straight_ ? 1 : 3),
             n_across = std::min(degree / 2 + 1, 3) + (straight_ ? 0 : 1);

@@ -60,7 +60,7 @@ class AncfBeam final : public Element, public ShapeElement {
   /// Returns one node: of "root", of "free_end", or of "line k" (node k).
   std::vector<NodeVectors> edge(const std::string& name) const override;
   std::vector<NodeVectors> nodes() const override;
-  void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
+  void tabulate(int e, int degree, Tabulate what, const ScaleFactors& factors, ScaleFactorKind kind,
                 ShapeTable& out) const override;
   int locate(const Vec2& material, Tabulate what, ShapeTable& out) const override;
 
@@ -105,6 +105,6 @@ std::vector<BeamNode> curve_reference(const std::function<CentreLine(double x)>&
 std::vector<BeamNode> arc_reference(double length, double angle, int n_elements);
 
 /// Returns the coordinates of n_elements + 1 nodes evenly spaced on [0, length] [m].
-std::vector<double> even_nodes(double length, int n_elements);
+std::vector<double> uniform_nodes(double length, int n_elements);
 
 }  // namespace flexmorph::fem

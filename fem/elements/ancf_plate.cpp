@@ -41,12 +41,12 @@ AncfPlate::AncfPlate(int dim, ShapeSet shapes, std::vector<MaterialLine> m,
       m_(std::move(m)),
       n_(std::move(n)) {
   if (m_.size() < 2 || n_.size() < 2)
-    throw Error::input("ancf_plate: at least one element each way");
+    throw Error::input("ancf_plate: there must be at least one element in each direction");
   for (int i = 0; i < n_m(); ++i)
     for (int j = 0; j < n_n(); ++j)
       for (const int corner : {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)})
         for (int k = 0; k < per_node_; ++k) vectors_.push_back(per_node_ * corner + k);
-  number_free_lines();
+  number_eulerian_lines();
   set_sizes({.dim = dim,
              .n_shapes = 4 * per_node_,
              .n_elements = n_m() * n_n(),
@@ -59,8 +59,8 @@ void AncfPlate::move_to(double t) {
   t_ = t;
   const auto degree = shapes_ == ShapeSet::q4 ? Hermite::Degree::linear : Hermite::Degree::cubic;
   size_t next_free = 0;
-  const auto place = [&](const std::vector<MaterialLine>& lines, std::vector<Motion>& at,
-                         std::vector<Hermite>& hermite) {
+  const auto location = [&](const std::vector<MaterialLine>& lines, std::vector<Motion>& at,
+                            std::vector<Hermite>& hermite) {
     at.clear();
     hermite.clear();
     for (const MaterialLine& line : lines)
@@ -68,12 +68,12 @@ void AncfPlate::move_to(double t) {
     for (size_t i = 0; i + 1 < at.size(); ++i) {
       if (!(at[i + 1].value > at[i].value))
         throw Error::numerical("ancf_plate: material lines " + std::to_string(i) + " and " +
-                               std::to_string(i + 1) + " cross at t = " + std::to_string(t));
+                               std::to_string(i + 1) + " cross at t = " + std::to_string(t) + " s");
       hermite.emplace_back(at[i], at[i + 1], degree);
     }
   };
-  place(m_, at_m_, hermite_m_);
-  place(n_, at_n_, hermite_n_);
+  location(m_, at_m_, hermite_m_);
+  location(n_, at_n_, hermite_n_);
 }
 
 std::span<const int> AncfPlate::vectors(int e) const {

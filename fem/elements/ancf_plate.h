@@ -15,7 +15,7 @@ namespace flexmorph::fem {
 ///
 /// Source: P (1)-(5); Hyldahl et al. (2013); h16: fem/README.md, Plate element.
 class AncfPlate final : public LineGrid,
-                        public FreeLineElement,
+                        public EulerianLineElement,
                         public CellElement,
                         public ProductElement {
  public:
@@ -38,10 +38,10 @@ class AncfPlate final : public LineGrid,
   VectorXd scalars() const override;
   void move_lines(const VectorXd& p, const VectorXd& rate, const VectorXd& acceleration) override;
   std::span<const int> free_sides(int e) const override;
-  void tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const override;
-  void tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
+  void tabulate_eulerian(int e, int degree, Tabulate what, EulerianTable& out) const override;
+  void tabulate(int e, int degree, Tabulate what, const ScaleFactors& factors, ScaleFactorKind kind,
                 ShapeTable& out) const override;
-  bool tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
+  bool tabulate_products(int e, int degree, const ScaleFactors& factors, ScaleFactorKind kind,
                          ProductTable& out) const override;
   void add_cell_integrals(int e, int degree, const VectorXd& values, const Grid& grid,
                           VectorXd& out) const override;
@@ -62,10 +62,10 @@ class AncfPlate final : public LineGrid,
 
  private:
   NodeVectors vectors_of(int i, int j) const;
-  void number_free_lines();
+  void number_eulerian_lines();
   void fill(int e, std::span<const double> s, std::span<const double> u, Tabulate what,
             ShapeTable& out) const;
-  MatrixXd weights(int e, int n, const Factors& factors, FactorKind kind) const;
+  MatrixXd weights(int e, int n, const ScaleFactors& factors, ScaleFactorKind kind) const;
 
   int per_node_;
   ShapeSet shapes_;

@@ -4,7 +4,7 @@
 
 #include "fem/elements/ancf_plate.h"
 #include "fem/elements/plate_shapes.h"
-#include "fem/free_lines.h"
+#include "fem/eulerian_lines.h"
 
 namespace flexmorph::fem {
 
@@ -14,13 +14,14 @@ using plate::kCorners;
 using plate::powers;
 using plate::Row4;
 
-void AncfPlate::number_free_lines() {
+void AncfPlate::number_eulerian_lines() {
   const auto number = [&](const std::vector<MaterialLine>& lines) {
     std::vector<int> out;
     for (const MaterialLine& line : lines) {
       if (line.free && shapes_ == ShapeSet::q4)
-        throw Error::input("ancf_plate: no line of a mesh of cells (q4) is free");
-      if (line.free && line.drive) throw Error::input("ancf_plate: a driven line is not free");
+        throw Error::input("ancf_plate: a mesh of cells (q4) has no free material lines");
+      if (line.free && line.drive)
+        throw Error::input("ancf_plate: a material line cannot be both driven and free");
       out.push_back(line.free ? static_cast<int>(free_.size()) : -1);
       if (line.free) free_.push_back({line.value, 0, 0});
     }
@@ -75,8 +76,8 @@ struct EndDerivatives {
 
 }  // namespace
 
-void AncfPlate::tabulate_free(int e, int degree, Tabulate what, FreeTable& out) const {
-  tabulate(e, degree, what, {}, FactorKind::none, out.at);
+void AncfPlate::tabulate_eulerian(int e, int degree, Tabulate what, EulerianTable& out) const {
+  tabulate(e, degree, what, {}, ScaleFactorKind::none, out.at);
   const auto i = static_cast<size_t>(e / n_n()), j = static_cast<size_t>(e % n_n());
   out.side = {at_m_[i], at_m_[i + 1], at_n_[j], at_n_[j + 1]};
   const std::span<const int> sides = free_sides(e);

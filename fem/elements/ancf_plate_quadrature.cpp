@@ -49,8 +49,8 @@ std::vector<Part> parts(double start, double length, double grid_start, double c
 }
 
 /// Returns true if a scale factor multiplies the weights.
-bool weighted(const Factors& factors, FactorKind kind) {
-  return kind != FactorKind::none && !factors.uniform();
+bool weighted(const ScaleFactors& factors, ScaleFactorKind kind) {
+  return kind != ScaleFactorKind::none && !factors.uniform();
 }
 
 /// Returns the integrals of the Lagrange polynomials of n Gauss points over subintervals (n_parts x
@@ -72,7 +72,7 @@ int n_points(int degree, bool weighted) {
 }  // namespace
 
 /// Returns the weights of n x n Gauss points times the scale factor.
-MatrixXd AncfPlate::weights(int e, int n, const Factors& factors, FactorKind kind) const {
+MatrixXd AncfPlate::weights(int e, int n, const ScaleFactors& factors, ScaleFactorKind kind) const {
   const Hermite& hm = hermite_m_[static_cast<size_t>(e / n_n())];
   const Hermite& hn = hermite_n_[static_cast<size_t>(e % n_n())];
   const double area = hm.length * hn.length;
@@ -81,7 +81,7 @@ MatrixXd AncfPlate::weights(int e, int n, const Factors& factors, FactorKind kin
     return area * line * line.transpose();
   }
   const Grid& grid = factors.grid;
-  const VectorXd& field = kind == FactorKind::stiffness ? factors.stiffness : factors.mass;
+  const VectorXd& field = kind == ScaleFactorKind::stiffness ? factors.stiffness : factors.mass;
   const std::vector<Part> pm = parts(hm.start, hm.length, grid.x0, grid.dx(), grid.nx);
   const std::vector<Part> pn = parts(hn.start, hn.length, grid.y0, grid.dy(), grid.ny);
   MatrixXd cells(pm.size(), pn.size());
@@ -118,8 +118,8 @@ CellRange AncfPlate::cells(int e, const Grid& grid) const {
   return {i0, i1 + 1, j0, j1 + 1, hm.length * hn.length};
 }
 
-void AncfPlate::tabulate(int e, int degree, Tabulate what, const Factors& factors, FactorKind kind,
-                         ShapeTable& out) const {
+void AncfPlate::tabulate(int e, int degree, Tabulate what, const ScaleFactors& factors,
+                         ScaleFactorKind kind, ShapeTable& out) const {
   const int n = n_points(degree, weighted(factors, kind));
   const GaussRule& rule = gauss(n);
   fill(e, rule.points, rule.points, what, out);
@@ -128,8 +128,8 @@ void AncfPlate::tabulate(int e, int degree, Tabulate what, const Factors& factor
     for (int h = 0; h < n; ++h) out.weight[g * n + h] = w(g, h);
 }
 
-bool AncfPlate::tabulate_products(int e, int degree, const Factors& factors, FactorKind kind,
-                                  ProductTable& out) const {
+bool AncfPlate::tabulate_products(int e, int degree, const ScaleFactors& factors,
+                                  ScaleFactorKind kind, ProductTable& out) const {
   const int n = n_points(degree, weighted(factors, kind));
   out.weight = weights(e, n, factors, kind);
   const auto line = [&](const Hermite& h, MatrixXd& f, MatrixXd& d, MatrixXd& dd) {

@@ -10,7 +10,7 @@ RigidBody::RigidBody(double length, bool moves)
       length_(length),
       moves_(moves) {
   if (!(length > 0) || !std::isfinite(length))
-    throw Error::input("rigid body: its length is positive [m]");
+    throw Error::input("rigid body: the length must be positive [m]");
 }
 
 std::unique_ptr<Element> make_rigid_body(double length, bool moves) {

@@ -23,7 +23,8 @@ class RigidBody final : public Element, public MovingElement, public RigidClock 
   /// Creates the element of a rigid body.
   /// @param length  length that turns the axis into a displacement: a size of the body, such as its
   /// radius of gyration [m]
-  /// @param moves   true if the mass changes in time because of a material reservoir (fem/stored.h)
+  /// @param moves   true if the mass changes in time because of a material reservoir
+  /// (fem/material_reservoir.h)
   /// @throws Error (input) unless the length is positive.
   explicit RigidBody(double length, bool moves = false);
 

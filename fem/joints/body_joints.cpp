@@ -73,7 +73,7 @@ class UnitAxis final : public PairJoint {
 
 class Revolute final : public PairJoint {
  public:
-  Revolute(std::string name, MarkerPlace a, MarkerPlace b)
+  Revolute(std::string name, MarkerLocation a, MarkerLocation b)
       : PairJoint(std::move(name), std::move(a), std::move(b),
                   {{entry(kPositionA, 0) | entry(kPositionB, 0),
                     entry(kPositionA, 1) | entry(kPositionB, 1)}}) {}
@@ -87,7 +87,7 @@ class Revolute final : public PairJoint {
 
 class RigidWeld final : public PairJoint {
  public:
-  RigidWeld(std::string name, MarkerPlace a, MarkerPlace b)
+  RigidWeld(std::string name, MarkerLocation a, MarkerLocation b)
       : PairJoint(std::move(name), std::move(a), std::move(b),
                   {{entry(kPositionA, 0) | entry(kPositionB, 0),
                     entry(kPositionA, 1) | entry(kPositionB, 1), bits({kAxisA, kAxisB})},
@@ -103,7 +103,7 @@ class RigidWeld final : public PairJoint {
 
 class Slider final : public PairJoint {
  public:
-  Slider(std::string name, MarkerPlace a, MarkerPlace b)
+  Slider(std::string name, MarkerLocation a, MarkerLocation b)
       : PairJoint(std::move(name), std::move(a), std::move(b),
                   {{bits({kAxisA, kPositionA, kPositionB}), bits({kAxisA, kAxisB})},
                    {{kAxisA, kPositionA}, {kAxisA, kPositionB}, {kAxisA, kAxisB}}}) {}
@@ -122,13 +122,14 @@ class Slider final : public PairJoint {
 
 std::function<Motion(double)> present(const std::string& joint,
                                       std::function<Motion(double)> motion) {
-  if (!motion) throw Error::input("joint '" + joint + "': it has no motion");
+  if (!motion) throw Error::input("joint '" + joint + "': its prescribed motion is missing");
   return motion;
 }
 
 class AngleDrive final : public PairJoint {
  public:
-  AngleDrive(std::string name, MarkerPlace a, MarkerPlace b, std::function<Motion(double)> motion)
+  AngleDrive(std::string name, MarkerLocation a, MarkerLocation b,
+             std::function<Motion(double)> motion)
       : PairJoint(name, std::move(a), std::move(b), {{bits({kAxisA, kAxisB})}, {{kAxisA, kAxisB}}}),
         motion_(present(name, std::move(motion))) {}
 
@@ -153,7 +154,8 @@ class AngleDrive final : public PairJoint {
 
 class Distance final : public PairJoint {
  public:
-  Distance(std::string name, MarkerPlace a, MarkerPlace b, std::function<Motion(double)> motion)
+  Distance(std::string name, MarkerLocation a, MarkerLocation b,
+           std::function<Motion(double)> motion)
       : PairJoint(name, std::move(a), std::move(b),
                   {{bits({kPositionA, kPositionB})},
                    {{kPositionA, kPositionA}, {kPositionA, kPositionB}, {kPositionB, kPositionB}}}),
@@ -166,7 +168,7 @@ class Distance final : public PairJoint {
   static void check(const std::string& name, double length) {
     if (!(length > 0) || !std::isfinite(length))
       throw Error::input("joint '" + name + "': its distance is " + std::to_string(length) +
-                         " m; a distance is positive");
+                         " m; a distance must be positive");
   }
 
   std::unique_ptr<Joint> clone() const override { return std::make_unique<Distance>(*this); }
@@ -193,11 +195,11 @@ class Distance final : public PairJoint {
 
 class PointDriven final : public PairJoint {
  public:
-  PointDriven(std::string name, MarkerPlace a, PointDrive point, std::vector<int> components)
+  PointDriven(std::string name, MarkerLocation a, PointDrive point, std::vector<int> components)
       : PairJoint(name, std::move(a), {}, {rows_of(name, components)}),
         point_(std::move(point)),
         components_(std::move(components)) {
-    if (!point_) throw Error::input("joint '" + name + "': it has no motion");
+    if (!point_) throw Error::input("joint '" + name + "': its prescribed motion is missing");
   }
 
  private:
@@ -207,7 +209,7 @@ class PointDriven final : public PairJoint {
     for (const int c : components) {
       if (c != 0 && c != 1)
         throw Error::input("joint '" + name + "': component " + std::to_string(c) +
-                           " of a point in the plane");
+                           " does not exist; a point in the plane has the components 0 and 1");
       out.push_back(entry(kPositionA, c));
     }
     return out;
@@ -218,7 +220,7 @@ class PointDriven final : public PairJoint {
     const std::vector<Motion> drive = point_(t);
     if (drive.size() != rows.size())
       throw Error::input("joint '" + name() + "': its drive has " + std::to_string(drive.size()) +
-                         " components of " + std::to_string(rows.size()));
+                         " components, but " + std::to_string(rows.size()) + " are needed");
     for (size_t i = 0; i < rows.size(); ++i) {
       const int c = components_[i];
       rows[i].f = y[kPositionA + c] - drive[i].value;
@@ -238,30 +240,30 @@ std::unique_ptr<Joint> make_unit_axis(std::string name, std::string body) {
   return std::make_unique<UnitAxis>(std::move(name), std::move(body));
 }
 
-std::unique_ptr<Joint> make_revolute(std::string name, MarkerPlace a, MarkerPlace b) {
+std::unique_ptr<Joint> make_revolute(std::string name, MarkerLocation a, MarkerLocation b) {
   return std::make_unique<Revolute>(std::move(name), std::move(a), std::move(b));
 }
 
-std::unique_ptr<Joint> make_rigid_weld(std::string name, MarkerPlace a, MarkerPlace b) {
+std::unique_ptr<Joint> make_rigid_weld(std::string name, MarkerLocation a, MarkerLocation b) {
   return std::make_unique<RigidWeld>(std::move(name), std::move(a), std::move(b));
 }
 
-std::unique_ptr<Joint> make_slider(std::string name, MarkerPlace a, MarkerPlace b) {
+std::unique_ptr<Joint> make_slider(std::string name, MarkerLocation a, MarkerLocation b) {
   return std::make_unique<Slider>(std::move(name), std::move(a), std::move(b));
 }
 
-std::unique_ptr<Joint> make_angle_drive(std::string name, MarkerPlace a, MarkerPlace b,
+std::unique_ptr<Joint> make_angle_drive(std::string name, MarkerLocation a, MarkerLocation b,
                                         std::function<Motion(double)> motion) {
   return std::make_unique<AngleDrive>(std::move(name), std::move(a), std::move(b),
                                       std::move(motion));
 }
 
-std::unique_ptr<Joint> make_distance(std::string name, MarkerPlace a, MarkerPlace b,
+std::unique_ptr<Joint> make_distance(std::string name, MarkerLocation a, MarkerLocation b,
                                      std::function<Motion(double)> motion) {
   return std::make_unique<Distance>(std::move(name), std::move(a), std::move(b), std::move(motion));
 }
 
-std::unique_ptr<Joint> make_point_drive(std::string name, MarkerPlace a, PointDrive point,
+std::unique_ptr<Joint> make_point_drive(std::string name, MarkerLocation a, PointDrive point,
                                         std::vector<int> components) {
   if (components.empty()) components = {0, 1};
   return std::make_unique<PointDriven>(std::move(name), std::move(a), std::move(point),

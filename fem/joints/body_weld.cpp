@@ -30,10 +30,10 @@ Vec2 turn_from(const Vec2& a, const Vec2& b, double angle) {
 ///   Φ = (c ⊗ z) × x                one row, bilinear
 class BodyWeld final : public Joint {
  public:
-  BodyWeld(std::string name, EdgePlace a, EdgePlace b, double angle, WeldMode mode)
+  BodyWeld(std::string name, EdgeLocation a, EdgeLocation b, double angle, WeldMode mode)
       : name_(std::move(name)), a_(std::move(a)), b_(std::move(b)), angle_(angle), mode_(mode) {
-    if (!std::isfinite(angle)) refuse("its angle is no finite number");
-    if (a_.body == b_.body) refuse("a weld is between two bodies");
+    if (!std::isfinite(angle)) refuse("its angle is not a finite number");
+    if (a_.body == b_.body) refuse("a weld must join two different bodies");
   }
 
   std::unique_ptr<Joint> clone() const override { return std::make_unique<BodyWeld>(*this); }
@@ -132,18 +132,19 @@ class BodyWeld final : public Joint {
     throw Error::input("joint '" + name_ + "': " + why);
   }
 
-  Edge edge_of(std::span<const BodyView> bodies, const EdgePlace& place) const {
-    const BodyView& body = find_body(bodies, name_, place.body);
+  Edge edge_of(std::span<const BodyView> bodies, const EdgeLocation& location) const {
+    const BodyView& body = find_body(bodies, name_, location.body);
     const Element& element = *body.element;
-    if (element.is_rigid()) refuse("'" + place.body + "' is a rigid body: it has no edges");
-    if (element.dim() != 2) refuse("bodies in space are not welded to each other");
-    const std::vector<NodeVectors> nodes = element.edge(place.edge);
+    if (element.is_rigid()) refuse("'" + location.body + "' is a rigid body: it has no edges");
+    if (element.dim() != 2) refuse("three-dimensional bodies cannot be welded to each other");
+    const std::vector<NodeVectors> nodes = element.edge(location.edge);
     for (const NodeVectors& node : nodes) {
       if (node.material.x() != nodes.front().material.x())
-        refuse("edge '" + place.edge + "' runs along '" + place.body +
-               "'; a weld is at an edge across it");
+        refuse("edge '" + location.edge + "' runs along '" + location.body +
+               "'; a weld needs an edge across the body");
       if (node.moving || is_free(element, node.material.x()))
-        refuse("edge '" + place.edge + "' of '" + place.body + "' moves through the material");
+        refuse("edge '" + location.edge + "' of '" + location.body +
+               "' moves through the material");
     }
     return {nodes, edge_vectors(element, nodes), body.first_dof};
   }
@@ -165,7 +166,7 @@ class BodyWeld final : public Joint {
       return;
     }
     if (mode_ == WeldMode::direction)
-      refuse("two beams are welded by \"partial\", \"edge\" or \"full\"");
+      refuse("the weld of two beams must be \"partial\", \"edge\" or \"full\"");
     equal_.push_back({b.dof(n.r_n), {section}});
     if (mode_ == WeldMode::full)
       equal_.push_back(
@@ -174,9 +175,9 @@ class BodyWeld final : public Joint {
 
   void join_plates(const Edge& a, const Edge& b) {
     if (mode_ != WeldMode::edge && mode_ != WeldMode::full)
-      refuse("two plates are welded by \"edge\" or \"full\"");
+      refuse("the weld of two plates must be \"edge\" or \"full\"");
     if (std::abs(std::sin(angle_)) > 1e-9)
-      refuse("plates meet edge on edge: the angle is 0 or half a turn");
+      refuse("the angle between two welded plates must be 0 or 180 degrees");
     const double c = std::cos(angle_) > 0 ? 1 : -1;
     if (a.nodes.size() != b.nodes.size())
       refuse("the plates have " + std::to_string(a.nodes.size() - 1) + " and " +
@@ -186,9 +187,9 @@ class BodyWeld final : public Joint {
       const NodeVectors& n = b.nodes[c > 0 ? k : a.nodes.size() - 1 - k];
       const double width = a.nodes.back().material.y() - a.nodes.front().material.y();
       if (std::abs(n.material.y() - c * m.material.y()) > 1e-9 * width)
-        refuse("nodes of the plates do not meet");
+        refuse("the nodes of the plates do not coincide");
       if ((m.r_n < 0) != (n.r_n < 0) || (m.r_m < 0) != (n.r_m < 0) || (m.r_mn < 0) != (n.r_mn < 0))
-        refuse("the plates have elements of two kinds");
+        refuse("the plates have elements of different types");
       const auto same = [&](int vector_a, int vector_b, double factor) {
         if (vector_a >= 0) equal_.push_back({b.dof(vector_b), {{a.dof(vector_a), {factor, 0}}}});
       };
@@ -202,7 +203,7 @@ class BodyWeld final : public Joint {
 
   /// @param angle  angle of the axis of the plate relative to the axis of the beam
   void put_on_beam(const Edge& beam, const Edge& plate, double angle) {
-    if (mode_ != WeldMode::edge) refuse("a plate and a beam are welded by \"edge\"");
+    if (mode_ != WeldMode::edge) refuse("the weld of a plate and a beam must be \"edge\"");
     const NodeVectors& end = beam.nodes[0];
     const Turned across{beam.dof(end.r_n),
                         turn_from(beam.reference.r_n, plate.reference.r_n, angle)};
@@ -214,7 +215,7 @@ class BodyWeld final : public Joint {
   }
 
   std::string name_;
-  EdgePlace a_, b_;
+  EdgeLocation a_, b_;
   double angle_;
   WeldMode mode_;
   std::vector<Equal> equal_;
@@ -223,8 +224,8 @@ class BodyWeld final : public Joint {
 
 }  // namespace
 
-std::unique_ptr<Joint> make_body_weld(std::string name, EdgePlace a, EdgePlace b, double angle,
-                                      WeldMode mode) {
+std::unique_ptr<Joint> make_body_weld(std::string name, EdgeLocation a, EdgeLocation b,
+                                      double angle, WeldMode mode) {
   return std::make_unique<BodyWeld>(std::move(name), std::move(a), std::move(b), angle, mode);
 }
 

@@ -117,7 +117,8 @@ class Pin final : public Joint {
     ShapeTable table;
     const int e = element.locate(material_, Tabulate::position, table);
     if (element.moving(e))
-      throw Error::input("joint '" + name_ + "': a pin in an element whose material lines move");
+      throw Error::input("joint '" + name_ +
+                         "': a pin cannot be in an element whose material lines move");
     if (all_) {
       components_.clear();
       for (int c = 0; c < element.dim(); ++c) components_.push_back(c);
@@ -125,7 +126,8 @@ class Pin final : public Joint {
     for (const int c : components_)
       if (c < 0 || c >= element.dim())
         throw Error::input("joint '" + name_ + "': component " + std::to_string(c) +
-                           " of a body in " + std::to_string(element.dim()) + " dimensions");
+                           " does not exist; the body has " + std::to_string(element.dim()) +
+                           " dimensions");
     const auto vectors = element.vectors(e);
     terms_.clear();
     for (int k = 0; k < element.n_shapes(); ++k)
@@ -137,7 +139,7 @@ class Pin final : public Joint {
     const std::vector<Motion> drive = point_(t);
     if (static_cast<int>(drive.size()) != size())
       throw Error::input("joint '" + name_ + "': its drive has " + std::to_string(drive.size()) +
-                         " components of " + std::to_string(size()));
+                         " components, but " + std::to_string(size()) + " are needed");
     rows.value.resize(size());
     rows.rate.resize(size());
     rows.acceleration.resize(size());

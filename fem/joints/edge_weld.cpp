@@ -14,7 +14,8 @@ namespace {
 /// bilinear.
 class EdgeWeld final : public Joint {
  public:
-  EdgeWeld(std::string name, std::string plate, std::string edge, MarkerPlace frame, WeldMode mode)
+  EdgeWeld(std::string name, std::string plate, std::string edge, MarkerLocation frame,
+           WeldMode mode)
       : name_(std::move(name)),
         plate_(std::move(plate)),
         edge_(std::move(edge)),
@@ -36,7 +37,7 @@ class EdgeWeld final : public Joint {
     };
     if (!std::all_of(nodes.begin(), nodes.end(), on_line))
       throw Error::input("joint '" + name_ + "': edge '" + edge_ +
-                         "' runs along the plate; a weld is at an edge across it");
+                         "' runs along the plate; a weld needs an edge across the plate");
     fixed_.clear();
     along_.clear();
     const WeldRows rows = weld_rows(element, nodes, mode_, name_);
@@ -139,7 +140,7 @@ class EdgeWeld final : public Joint {
 }  // namespace
 
 std::unique_ptr<Joint> make_edge_weld(std::string name, std::string plate, std::string edge,
-                                      MarkerPlace frame, WeldMode mode) {
+                                      MarkerLocation frame, WeldMode mode) {
   return std::make_unique<EdgeWeld>(std::move(name), std::move(plate), std::move(edge),
                                     std::move(frame), mode);
 }

@@ -28,12 +28,12 @@ struct AngleOf {
 /// removes.
 class Gear final : public PairJoint {
  public:
-  Gear(std::string name, MarkerPlace a, MarkerPlace b, const GearData& wheels)
+  Gear(std::string name, MarkerLocation a, MarkerLocation b, const GearData& wheels)
       : PairJoint(std::move(name), std::move(a), std::move(b),
                   {{bits({Part::kAxisA, Part::kAxisB})},
                    {{Part::kAxisA, Part::kAxisA}, {Part::kAxisB, Part::kAxisB}}}) {
     if (wheels.teeth_a < 1 || wheels.teeth_b < 1)
-      throw Error::input("joint '" + this->name() + "': a wheel has one tooth at least");
+      throw Error::input("joint '" + this->name() + "': a wheel must have at least one tooth");
     const int common = std::gcd(wheels.teeth_a, wheels.teeth_b);
     p_ = (wheels.inner ? -1.0 : 1.0) * wheels.teeth_a / common;
     q_ = 1.0 * wheels.teeth_b / common;
@@ -57,7 +57,7 @@ class Gear final : public PairJoint {
 
 }  // namespace
 
-std::unique_ptr<Joint> make_gear(std::string name, MarkerPlace a, MarkerPlace b,
+std::unique_ptr<Joint> make_gear(std::string name, MarkerLocation a, MarkerLocation b,
                                  const GearData& wheels) {
   return std::make_unique<Gear>(std::move(name), std::move(a), std::move(b), wheels);
 }

@@ -39,7 +39,7 @@ class Hold final : public Joint {
         const int vector = vector_of(node, held.vector);
         if (vector < 0) continue;  // h12 has no r_mn
         if (node.moving)
-          throw Error::input("joint '" + name_ + "': a hold on a material line that moves");
+          throw Error::input("joint '" + name_ + "': a material line that moves cannot be fixed");
         for (const int c : held.components)
           rows_.push_back({body.first_dof + body.element->dim() * vector + c,
                            held.value.size() > 0 ? held.value[c] : reference(vector, c)});
@@ -67,18 +67,17 @@ class Hold final : public Joint {
   };
 
   void check(const Held& held, int dim) const {
-    if (held.components.empty())
-      throw Error::input("joint '" + name_ + "': a hold without components holds nothing");
+    if (held.components.empty()) throw Error::input("joint '" + name_ + "': no component is fixed");
     for (const int c : held.components)
       if (c < 0 || c >= dim)
         throw Error::input("joint '" + name_ + "': component " + std::to_string(c) +
-                           " of a body in " + std::to_string(dim) + " dimensions");
+                           " does not exist; the body has " + std::to_string(dim) + " dimensions");
     if (held.value.size() != 0 && (held.value.size() != dim || !held.value.allFinite()))
-      throw Error::input("joint '" + name_ + "': a held value has " + std::to_string(dim) +
+      throw Error::input("joint '" + name_ + "': a fixed value must have " + std::to_string(dim) +
                          " finite entries");
   }
 
-  std::vector<NodeVectors> nodes(const HoldPlace& at, const Element& element) const {
+  std::vector<NodeVectors> nodes(const HoldLocation& at, const Element& element) const {
     if (!at.edge.empty()) return element.edge(at.edge);
     std::vector<NodeVectors> out;
     // The tolerance is a millionth of the element size, because case files contain rounded
@@ -91,7 +90,7 @@ class Hold final : public Joint {
         out.push_back(node);
     }
     if (out.empty())
-      throw Error::input("joint '" + name_ + "': no node of body '" + body_ + "' in [" +
+      throw Error::input("joint '" + name_ + "': there is no node of body '" + body_ + "' in [" +
                          std::to_string(at.low.x()) + ", " + std::to_string(at.high.x()) + "] x [" +
                          std::to_string(at.low.y()) + ", " + std::to_string(at.high.y()) + "] m");
     return out;
@@ -104,7 +103,7 @@ class Hold final : public Joint {
                      [](const Row& x, const Row& y) { return x.dof < y.dof; });
     for (size_t i = 0; i + 1 < rows_.size(); ++i)
       if (rows_[i].dof == rows_[i + 1].dof && rows_[i].value != rows_[i + 1].value)
-        throw Error::input("joint '" + name_ + "': one entry held at two values, " +
+        throw Error::input("joint '" + name_ + "': one degree of freedom is fixed at two values, " +
                            std::to_string(rows_[i].value) + " and " +
                            std::to_string(rows_[i + 1].value));
     const auto same = [](const Row& x, const Row& y) { return x.dof == y.dof; };

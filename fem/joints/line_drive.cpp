@@ -18,8 +18,10 @@ class LineDrive final : public Joint {
   void bind(std::span<const BodyView> bodies) override {
     const BodyView& body = find_body(bodies, name_, body_);
     if (scalar_ < 0 || scalar_ >= body.element->n_scalars())
-      throw Error::input("joint '" + name_ + "': body '" + body_ + "' has " +
-                         std::to_string(body.element->n_scalars()) + " free material lines");
+      throw Error::input("joint '" + name_ + "': line " + std::to_string(scalar_) +
+                         " does not exist; the material coordinates of " +
+                         std::to_string(body.element->n_scalars()) + " lines of body '" + body_ +
+                         "' are unknowns");
     dof_ = body.first_dof + body.element->dim() * body.element->n_vectors() + scalar_;
   }
 

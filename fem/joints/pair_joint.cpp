@@ -8,7 +8,7 @@ unsigned PairJoint::bits(std::initializer_list<Part> parts) {
   return out;
 }
 
-PairJoint::PairJoint(std::string name, MarkerPlace a, MarkerPlace b, Shape shape)
+PairJoint::PairJoint(std::string name, MarkerLocation a, MarkerLocation b, Shape shape)
     : name_(std::move(name)),
       pair_(std::move(a), std::move(b)),
       shape_(std::move(shape)),

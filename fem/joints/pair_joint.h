@@ -49,7 +49,7 @@ class PairJoint : public Joint {
   static unsigned bits(std::initializer_list<Part> parts);
 
   /// Creates a joint with the given structure of its rows.
-  PairJoint(std::string name, MarkerPlace a, MarkerPlace b, Shape shape);
+  PairJoint(std::string name, MarkerLocation a, MarkerLocation b, Shape shape);
 
   /// Fills the rows at (y, t). Entries that the function never sets are zero.
   virtual void fill(double t, const Values& y, std::vector<PairRow>& rows) const = 0;

@@ -15,7 +15,7 @@ namespace {
 ///   Φ = n · (p - c),   Φ_p = n,   Φ_pp = -κ/(1 - κ Φ) τ τᵀ
 class Path final : public PairJoint {
  public:
-  Path(std::string name, MarkerPlace a, MarkerPlace b, PlaneCurve curve)
+  Path(std::string name, MarkerLocation a, MarkerLocation b, PlaneCurve curve)
       : PairJoint(std::move(name), std::move(a), std::move(b),
                   {{bits({Part::kPositionA, Part::kAxisA, Part::kPositionB})},
                    {{Part::kPositionA, Part::kPositionA},
@@ -71,8 +71,8 @@ class Path final : public PairJoint {
     const double until = curve_.until();
     if (curve_.is_closed() || (s > -0.05 * until && s < 1.05 * until)) return;
     const std::string where = formatted(
-        "': at t = %.6g s its point is beyond an end of its curve, at parameter %.6g of "
-        "0 to %.6g",
+        "': at t = %.6g s its point is beyond an end of its curve; the parameter is %.6g, but it "
+        "lies between 0 and %.6g",
         t, s, until);
     throw Error::numerical("joint '" + name() + where);
   }
@@ -82,7 +82,8 @@ class Path final : public PairJoint {
 
 }  // namespace
 
-std::unique_ptr<Joint> make_path(std::string name, MarkerPlace a, MarkerPlace b, PlaneCurve curve) {
+std::unique_ptr<Joint> make_path(std::string name, MarkerLocation a, MarkerLocation b,
+                                 PlaneCurve curve) {
   return std::make_unique<Path>(std::move(name), std::move(a), std::move(b), std::move(curve));
 }
 

@@ -47,7 +47,8 @@ inline WeldRows weld_rows(const Element& element, const std::vector<NodeVectors>
                           WeldMode mode, const std::string& joint) {
   const bool beam = nodes.size() == 1;
   if (mode == WeldMode::partial && !beam)
-    throw Error::input("joint '" + joint + "': only the end of a beam is welded partially");
+    throw Error::input("joint '" + joint +
+                       "': a partial weld is only available for the end of a beam");
   const auto across = [](const Vec2& x) { return Vec2(-x.y(), x.x()); };
   const auto [r_m, r_n] = edge_vectors(element, nodes);
   WeldRows out;

@@ -23,28 +23,28 @@ struct BodyTerm {
   Term& operator*() const { return *term; }
 
   /// Adds the forces of eight elements, one by one where the term is no BatchTerm.
-  void add_forces(const Batch& x, Lanes* force) const;
+  void add_forces(const Batch& x, Pack* force) const;
   /// Adds the tangent matrices of eight elements, one by one where the term is no BatchTerm.
-  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const;
+  void add_tangents(const Batch& x, const Weights& w, Pack* tangent) const;
   /// Returns the interface for free lines.
   /// @throws Error (input) where the term has none
-  const FreeLineTerm& with_free_lines() const;
+  const EulerianLineTerm& with_eulerian_lines() const;
   /// Returns the interface for a mean force.
   /// @throws Error (input) where the term has none
   const MeanForceTerm& with_mean_force() const;
 
   std::unique_ptr<Term> term;  ///< The term itself.
   // Interfaces of the term, null where its class lacks the interface.
-  const BatchTerm* batch;          ///< Evaluation of eight elements at once.
-  const MeanForceTerm* mean;       ///< Mean force of a step.
-  const FreeLineTerm* free_lines;  ///< Forces on free lines.
-  const DesignedTerm* designed;    ///< Derivatives by the scale factors.
-  const ElasticEnergy* elastic;    ///< Derivatives of the strain energy.
-  const FlowTerm* flow;            ///< Power of material flow.
-  ScaledLoad* scaled;              ///< Load factor.
-  LoadTerm* load;                  ///< The term as a load.
-  StrainTerm* strain;              ///< The term as a term made of strains.
-  HeatedTerm* heated;              ///< The term as a term with a temperature.
+  const BatchTerm* batch;                  ///< Evaluation of eight elements at once.
+  const MeanForceTerm* mean;               ///< Mean force of a step.
+  const EulerianLineTerm* eulerian_lines;  ///< Forces on free lines.
+  const DesignedTerm* designed;            ///< Derivatives by the scale factors.
+  const ElasticEnergy* elastic;            ///< Derivatives of the strain energy.
+  const FlowTerm* flow;                    ///< Power of material flow.
+  ScaledLoad* scaled;                      ///< Load factor.
+  LoadTerm* load;                          ///< The term as a load.
+  StrainTerm* strain;                      ///< The term as a term made of strains.
+  HeatedTerm* heated;                      ///< The term as a term with a temperature.
 };
 
 }  // namespace flexmorph::fem

@@ -17,7 +17,8 @@ Model::Model(const Model& other)
     for (const BodyTerm& term : b.terms) body.terms.push_back(term->clone());
   }
   for (const auto& joint : other.joints_) joints_.push_back(joint->clone());
-  for (const ModelLink& link : other.links_) links_.emplace_back(link->clone());
+  for (const ModelForceElement& force_element : other.force_elements_)
+    force_elements_.emplace_back(force_element->clone());
   number_dofs();  // binds joints and force elements to the bodies of the copy
 }
 
@@ -50,12 +51,14 @@ void Model::add_joint(std::unique_ptr<Joint> joint) {
   ++content_version_;
 }
 
-void Model::add_link(std::unique_ptr<Link> link) {
-  const auto turned = std::count_if(links_.begin(), links_.end(),
-                                    [](const ModelLink& each) { return each.counts_turns(); });
-  links_.emplace_back(std::move(link));
-  links_.back()->bind(views());
-  if (links_.back().counts_turns()) links_.back().turning->set_place(static_cast<int>(turned));
+void Model::add_force_element(std::unique_ptr<ForceElement> force_element) {
+  const auto turned =
+      std::count_if(force_elements_.begin(), force_elements_.end(),
+                    [](const ModelForceElement& each) { return each.counts_turns(); });
+  force_elements_.emplace_back(std::move(force_element));
+  force_elements_.back()->bind(views());
+  if (force_elements_.back().counts_turns())
+    force_elements_.back().turning->set_turn_index(static_cast<int>(turned));
   ++pattern_version_;
   ++content_version_;
 }
@@ -71,11 +74,11 @@ void Model::set_element(Body& body, std::unique_ptr<Element> element) {
   number_dofs();
 }
 
-void Model::set_factors(Body& body, Factors factors) {
+void Model::set_factors(Body& body, ScaleFactors factors) {
   body.factors = std::move(factors);
   ++content_version_;
   // The force of a force element may depend on the inertia of a body, and thereby on its factors.
-  for (const ModelLink& link : links_) link->bind(views());
+  for (const ModelForceElement& force_element : force_elements_) force_element->bind(views());
 }
 
 std::vector<BodyView> Model::views() const {
@@ -99,15 +102,15 @@ void Model::number_dofs() {
     first_rows_.push_back(n_constraints_);
   }
   int n_turned = 0;
-  for (const ModelLink& link : links_) {
-    link->bind(bodies);
-    if (link.counts_turns()) link.turning->set_place(n_turned++);
+  for (const ModelForceElement& force_element : force_elements_) {
+    force_element->bind(bodies);
+    if (force_element.counts_turns()) force_element.turning->set_turn_index(n_turned++);
   }
   ++pattern_version_;
   ++content_version_;
 }
 
-bool Model::has_free_lines() const {
+bool Model::has_eulerian_lines() const {
   return std::any_of(bodies_.begin(), bodies_.end(),
                      [](const Body& b) { return b.element->n_scalars() > 0; });
 }
@@ -141,8 +144,8 @@ void Model::scale_loads(double factor) {
       if (term.scaled && (term.strain ? scales_temperatures_ : scales_loads_))
         term.scaled->scale_load(factor);
   if (!scales_loads_) return;
-  for (const ModelLink& link : links_)
-    if (link.scaled) link.scaled->scale_load(factor);
+  for (const ModelForceElement& force_element : force_elements_)
+    if (force_element.scaled) force_element.scaled->scale_load(factor);
 }
 
 void Model::choose_scaled(bool loads, bool temperatures) {

@@ -10,7 +10,7 @@
 #include "fem/heat.h"
 #include "fem/joint.h"
 #include "fem/model/body_term.h"
-#include "fem/model/model_link.h"
+#include "fem/model/model_force_element.h"
 #include "fem/section.h"
 
 namespace flexmorph::fem {
@@ -22,7 +22,7 @@ struct Body {
   std::unique_ptr<Element> element;       ///< Elements of the body.
   std::optional<PlaneSection> section{};  ///< Thickness and material; absent for a rigid body.
   std::vector<BodyTerm> terms;            ///< Terms of the body.
-  Factors factors;                        ///< Scale factors of the design.
+  ScaleFactors factors;                   ///< Scale factors of the design.
   std::optional<Heat> heat{};  ///< Temperature of the body; absent without thermal strain.
   int first_dof = 0;           ///< Number of the first unknown of the body in the model.
 
@@ -57,7 +57,7 @@ class Model {
   /// Adds a joint between bodies that were added before.
   void add_joint(std::unique_ptr<Joint> joint);
   /// Adds a force element between bodies that were added before.
-  void add_link(std::unique_ptr<Link> link);
+  void add_force_element(std::unique_ptr<ForceElement> force_element);
 
   /// Returns the bodies in the order in which they were added.
   std::vector<Body>& bodies() { return bodies_; }
@@ -71,16 +71,16 @@ class Model {
   /// of constraints.
   int first_row(size_t joint) const { return first_rows_[joint]; }
   /// Returns the force elements in the order in which they were added.
-  const std::vector<ModelLink>& links() const { return links_; }
+  const std::vector<ModelForceElement>& force_elements() const { return force_elements_; }
 
   /// Sets another mesh of a body; states of the old mesh no longer fit
   /// (dynamics/mesh_changes/mesh_map.h maps them).
   void set_element(Body& body, std::unique_ptr<Element> element);
   /// Sets the scale factors of the design of a body.
-  void set_factors(Body& body, Factors factors);
+  void set_factors(Body& body, ScaleFactors factors);
 
   /// Returns true if coordinates of material lines are among the unknowns.
-  bool has_free_lines() const;
+  bool has_eulerian_lines() const;
 
   /// Sets the factor of all loads and temperatures that choose_scaled() selects (ScaledLoad); 1
   /// until the first call.
@@ -116,7 +116,7 @@ class Model {
   std::vector<Body> bodies_;
   std::vector<std::unique_ptr<Joint>> joints_;
   std::vector<int> first_rows_ = {0};
-  std::vector<ModelLink> links_;
+  std::vector<ModelForceElement> force_elements_;
 
  private:
   void number_dofs();

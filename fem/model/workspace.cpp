@@ -40,7 +40,7 @@ void Workspace::prepare(const State& x) {
   prepare_bodies(x.t);
 }
 
-void Workspace::prepare_whole(const Whole& whole) {
+void Workspace::restore_cache(const CacheCheckpoint& whole) {
   size_t at = 0;
   for (Body& b : bodies_) {
     const int n = b.element->n_scalars();
@@ -69,7 +69,7 @@ void Workspace::prepare_bodies(double t) {
   // The time stays invalid if an exception is thrown.
   prepared_t_ = std::numeric_limits<double>::quiet_NaN();
   const bool all = prepared_version_ != content_version();
-  if (all) whole_ = {t, lines_};
+  if (all) checkpoint_ = {t, lines_};
   if (numbered_version_ != pattern_version()) number_batches();
   for (Body& b : bodies_) {
     b.element->move_to(t);
@@ -79,7 +79,7 @@ void Workspace::prepare_bodies(double t) {
     }
     try {
       for (const BodyTerm& term : b.terms) {
-        if (all && b.element->n_scalars() > 0) term.with_free_lines();
+        if (all && b.element->n_scalars() > 0) term.with_eulerian_lines();
         term->prepare(*b.element, b.factors, all);
       }
     } catch (const Error& error) {
@@ -148,8 +148,8 @@ VectorXd Workspace::joint_force(size_t joint, const State& x) {
   return out;
 }
 
-PlaceMotion Workspace::place_motion(const MarkerPlace& place, const State& x) const {
-  Marker marker(place);
+LocationMotion Workspace::location_motion(const MarkerLocation& location, const State& x) const {
+  Marker marker(location);
   marker.bind(views(), "place", false);
   const MarkerMotion m = marker.evaluate(x.t, x.q, x.v);
   Eigen::Vector4d acceleration = m.convective;
@@ -199,8 +199,8 @@ Energies Workspace::energies(const State& x) {
   prepare(x);
   Energies out;
   for (const Body& b : bodies_) add_energies(x, b, out);
-  for (const ModelLink& link : links_) {
-    const Energies of_link = link->energies(x);
+  for (const ModelForceElement& force_element : force_elements_) {
+    const Energies of_link = force_element->energies(x);
     out.strain += of_link.strain;
     out.potential += of_link.potential;
   }
@@ -227,17 +227,19 @@ Vec3 Workspace::momentum(const State& x) {
 }
 
 void Workspace::follow_turns(State& x) const {
-  const auto counts = [](const ModelLink& link) { return link.counts_turns(); };
-  VectorXd turned(std::count_if(links_.begin(), links_.end(), counts));
+  const auto counts = [](const ModelForceElement& force_element) {
+    return force_element.counts_turns();
+  };
+  VectorXd turned(std::count_if(force_elements_.begin(), force_elements_.end(), counts));
   Eigen::Index k = 0;
-  for (const ModelLink& link : links_)
-    if (counts(link)) turned[k++] = link.turning->turned(x);
+  for (const ModelForceElement& force_element : force_elements_)
+    if (counts(force_element)) turned[k++] = force_element.turning->turned(x);
   x.turned = std::move(turned);
 }
 
-double Workspace::link_power(const State& x) {
+double Workspace::force_element_power(const State& x) {
   double out = 0;
-  for (const ModelLink& link : links_) out += link->power(x);
+  for (const ModelForceElement& force_element : force_elements_) out += force_element->power(x);
   return out;
 }
 
@@ -319,7 +321,7 @@ double Workspace::smallest_area_ratio(const State& x) {
     if (!b.element->has_shapes()) continue;
     for (int e = 0; e < b.element->n_elements(); ++e) {
       gather(b, e, x, local);
-      b.element->tabulate(e, 4, Tabulate::gradient, {}, FactorKind::none, table);
+      b.element->tabulate(e, 4, Tabulate::gradient, {}, ScaleFactorKind::none, table);
       if (table.N_m.size() == 0) continue;
       const MatrixXd r_m = table.N_m * local.q, r_n = table.N_n * local.q;
       for (Eigen::Index p = 0; p < r_m.rows(); ++p)

@@ -13,7 +13,7 @@ struct Wrench {
 };
 
 /// Motion of a marker location of a model (fem/marker.h).
-struct PlaceMotion {
+struct LocationMotion {
   /// Position [m], velocity [m/s] and acceleration [m/s²].
   Vec2 position{0, 0}, velocity{0, 0}, acceleration{0, 0};
   Vec2 axis{0, 0};  ///< Axis 1 [-]; zero for a point of a plate.
@@ -68,16 +68,16 @@ class Workspace : public Model {
   /// model. In that preparation elements of equal size (up to round-off) share their data, and they
   /// continue to share them while only lines move. A motion that is continued bit for bit must
   /// start from this preparation.
-  struct Whole {
+  struct CacheCheckpoint {
     double t = 0;  ///< Time [s].
 
     /// Free lines (q, v, a of each in turn); empty for their initial coordinates.
     std::vector<double> lines;
   };
   /// Returns the last preparation of all elements.
-  const Whole& prepared_whole() const { return whole_; }
+  const CacheCheckpoint& cache_checkpoint() const { return checkpoint_; }
   /// Repeats a preparation of all elements.
-  void prepare_whole(const Whole& whole);
+  void restore_cache(const CacheCheckpoint& whole);
 
   /// Evaluates M q̈ + F(q, q̇) without constraint forces (n_dofs).
   void force(const State& x, VectorXd& out);
@@ -128,7 +128,7 @@ class Workspace : public Model {
   /// Returns the motion of a marker location. It is meant for output, because it looks up the
   /// location at every call.
   /// @throws Error (input) as Marker::bind().
-  PlaceMotion place_motion(const MarkerPlace& place, const State& x) const;
+  LocationMotion location_motion(const MarkerLocation& location, const State& x) const;
 
   /// Returns the energies of all bodies and force elements [J].
   Energies energies(const State& x);
@@ -140,8 +140,8 @@ class Workspace : public Model {
   /// Stores the counted angles of the force elements in x.turned; call it after every accepted
   /// step.
   void follow_turns(State& x) const;
-  /// Returns the power of all force elements, see Link::power() [W].
-  double link_power(const State& x);
+  /// Returns the power of all force elements, see ForceElement::power() [W].
+  double force_element_power(const State& x);
   /// Returns the power of loads without a potential, see LoadTerm::power() [W].
   double load_power(const State& x);
   /// Returns the power of material flow of all terms at fixed unknowns, see FlowTerm [W].
@@ -153,19 +153,20 @@ class Workspace : public Model {
   double dissipation(const State& x);
   /// Returns initial gradients by the scale factors, one per body: zeros for a designed body, empty
   /// vectors for other bodies.
-  std::vector<FactorSlopes> no_slopes() const;
+  std::vector<ScaleFactorGradient> zero_scale_factor_gradients() const;
   /// Adds the gradient of ψ · F with respect to the scale factors of every body, with F of force(),
   /// see DesignedTerm.
   /// @param psi  (n_dofs)
-  /// @param out  gradients in the form of no_slopes()
-  void add_factor_slopes(const State& x, const VectorXd& psi, std::vector<FactorSlopes>& out);
+  /// @param out  gradients in the form of zero_scale_factor_gradients()
+  void add_scale_factor_gradient(const State& x, const VectorXd& psi,
+                                 std::vector<ScaleFactorGradient>& out);
   /// Returns the strain energy of all bodies, without force elements [J].
   double strain_energy(const State& x);
   /// Adds the derivatives of strain_energy() times weight.
   /// @param by_q        derivatives by the unknowns (n_dofs)
-  /// @param by_factors  gradients in the form of no_slopes()
-  void add_strain_slopes(const State& x, double weight, VectorXd& by_q,
-                         std::vector<FactorSlopes>& by_factors);
+  /// @param d_factors  gradients in the form of zero_scale_factor_gradients()
+  void add_strain_energy_gradient(const State& x, double weight, VectorXd& by_q,
+                                  std::vector<ScaleFactorGradient>& d_factors);
   /// Returns (Φ_qᵀ λ)_q times a vector (n_dofs).
   VectorXd constraint_curvature(const State& x, const VectorXd& lambda, const VectorXd& along);
   /// Returns the smallest area ratio over all elements (r_m × r_n in the plane, |r_m × r_n| in
@@ -176,7 +177,7 @@ class Workspace : public Model {
  private:
   /// Positions of eight consecutive elements of a body in the vectors and in the value array of the
   /// matrix.
-  struct BatchPlaces {
+  struct BatchIndices {
     size_t body = 0;
     int first = 0, count = 0;
     std::vector<int> dofs;  // unknowns of the model (n_local, kLanes)
@@ -202,8 +203,8 @@ class Workspace : public Model {
   void add_single_tangent(const Single& single, const State& x, const Weights& w, double scale,
                           double* values) const;
   /// Recomputes the entries of the tangent of a batch among the chosen unknowns.
-  void renew_batch(const BatchPlaces& places, const State& x, const Weights& w, double scale,
-                   const std::vector<char>& chosen, double* values) const;
+  void renew_batch(const BatchIndices& value_indices, const State& x, const Weights& w,
+                   double scale, const std::vector<char>& chosen, double* values) const;
   /// Recomputes the entries of the tangent of a single element among the chosen unknowns.
   void renew_single(const Single& single, const State& x, const Weights& w, double scale,
                     const std::vector<char>& chosen, double* values) const;
@@ -224,7 +225,7 @@ class Workspace : public Model {
   template <class F>
   void for_batches(const State& x, int per_thread, const F& f) const;
   void clear(SparseMatrix& out);
-  void add_link_entries(double scale, double* values) const;
+  void add_force_element_entries(double scale, double* values) const;
   void fill_joints(const State& x, double stiffness_scale, const Constraints& rows,
                    const Constraints& columns, SparseMatrix& out);
 
@@ -232,23 +233,23 @@ class Workspace : public Model {
   int prepared_version_ = -1;
   double prepared_t_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> lines_;
-  Whole whole_;
+  CacheCheckpoint checkpoint_;
   // Batches and single elements, numbered for the pattern_version() numbered_version_. Batches of
   // one colour follow each other; colours_ has the index of the first batch of every colour, and at
   // its end the number of batches.
   int numbered_version_ = -1;
-  std::vector<BatchPlaces> batches_;  // with the positions of the current pattern
+  std::vector<BatchIndices> batches_;  // with the positions of the current pattern
   std::vector<Single> singles_;
   std::vector<int> colours_;
   // Pattern of the iteration matrix and positions in its value array, for the pattern_version()
   // built_version_.
   int built_version_ = -1;
   SparseMatrix pattern_;
-  std::vector<int> joint_places_;      // two per jacobian entry: (row, dof), (dof, row)
-  std::vector<int> stiffness_places_;  // of the joints' (Φ_qᵀ λ)_q
-  std::vector<int> link_places_;       // of the tangents of the force elements
+  std::vector<int> joint_indices_;          // two per jacobian entry: (row, dof), (dof, row)
+  std::vector<int> stiffness_indices_;      // of the joints' (Φ_qᵀ λ)_q
+  std::vector<int> force_element_indices_;  // of the tangents of the force elements
   // Work arrays.
-  std::vector<Eigen::Triplet<double>> stiffness_, link_entries_;
+  std::vector<Eigen::Triplet<double>> stiffness_, force_element_entries_;
   ConstraintRows rows_;
 };
 

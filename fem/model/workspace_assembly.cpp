@@ -23,7 +23,7 @@ constexpr int kForcesPerThread = 512, kTangentsPerThread = 128;
 
 /// Every batch gets the first colour that no earlier batch with a common unknown has.
 void Workspace::number_batches() {
-  std::vector<std::vector<BatchPlaces>> by_colour;
+  std::vector<std::vector<BatchIndices>> by_colour;
   singles_.clear();
   for (size_t index = 0; index < bodies_.size(); ++index) {
     const Body& b = bodies_[index];
@@ -35,12 +35,12 @@ void Workspace::number_batches() {
     /// one bit per colour, for each vector unknown
     std::vector<std::uint64_t> colours(static_cast<size_t>(b.element->n_vectors()));
     for (int first = 0; first < n; first += kLanes) {
-      BatchPlaces batch{index, first, std::min(kLanes, n - first), {}, {}};
+      BatchIndices batch{index, first, std::min(kLanes, n - first), {}, {}};
       std::uint64_t taken = 0;
       for (int e = first; e < first + batch.count; ++e)
         for (const int k : b.element->vectors(e)) taken |= colours[static_cast<size_t>(k)];
       const int colour = std::countr_one(taken);
-      if (colour >= 64) throw Error::input("body '" + b.name + "': too many elements meet");
+      if (colour >= 64) throw Error::input("body '" + b.name + "': too many elements share a node");
       for (int e = first; e < first + batch.count; ++e)
         for (const int k : b.element->vectors(e))
           colours[static_cast<size_t>(k)] |= std::uint64_t{1} << colour;
@@ -87,17 +87,19 @@ void Workspace::for_batches(const State& x, int per_thread, const F& f) const {
   for (size_t colour = 0; colour + 1 < colours_.size(); ++colour) {
 #pragma omp for schedule(static)
     for (int index = colours_[colour]; index < colours_[colour + 1]; ++index) try {
-        const BatchPlaces& places = batches_[static_cast<size_t>(index)];
-        const Element& element = *bodies_[places.body].element;
-        Lanes q[kMaxLocal], v[kMaxLocal], a[kMaxLocal];
-        const int* dof = places.dofs.data();
-        for (size_t k = 0; k < places.dofs.size() / kLanes; ++k, dof += kLanes)
+        const BatchIndices& value_indices = batches_[static_cast<size_t>(index)];
+        const Element& element = *bodies_[value_indices.body].element;
+        Pack q[kMaxLocal], v[kMaxLocal], a[kMaxLocal];
+        const int* dof = value_indices.dofs.data();
+        for (size_t k = 0; k < value_indices.dofs.size() / kLanes; ++k, dof += kLanes)
           for (int lane = 0; lane < kLanes; ++lane) {
             q[k][lane] = x.q.data()[dof[lane]];
             v[k][lane] = x.v.data()[dof[lane]];
             a[k][lane] = x.a.data()[dof[lane]];
           }
-        f(Batch{places.first, places.count, element.n_shapes(), element.dim(), q, v, a}, places);
+        f(Batch{value_indices.first, value_indices.count, element.n_shapes(), element.dim(), q, v,
+                a},
+          value_indices);
         /// rethrows the failure of the lowest batch number, independent of the number of threads
       } catch (...) {
 #pragma omp critical
@@ -113,25 +115,26 @@ void Workspace::for_batches(const State& x, int per_thread, const F& f) const {
 void Workspace::force(const State& x, VectorXd& out) {
   prepare(x);
   out.setZero(n_dofs());
-  for_batches(x, kForcesPerThread, [&](const Batch& batch, const BatchPlaces& places) {
-    Lanes f[kMaxLocal];
-    std::fill(f, f + batch.n_local(), Lanes{});
-    for (const BodyTerm& term : bodies_[places.body].terms) term.add_forces(batch, f);
-    const int* dof = places.dofs.data();
+  for_batches(x, kForcesPerThread, [&](const Batch& batch, const BatchIndices& value_indices) {
+    Pack f[kMaxLocal];
+    std::fill(f, f + batch.n_local(), Pack{});
+    for (const BodyTerm& term : bodies_[value_indices.body].terms) term.add_forces(batch, f);
+    const int* dof = value_indices.dofs.data();
     for (int k = 0; k < batch.n_local(); ++k, dof += kLanes)
       for (int lane = 0; lane < batch.count; ++lane) out.data()[dof[lane]] += f[k][lane];
   });
   for (const Single& single : singles_) add_single_force(single, x, out);
-  for (const ModelLink& link : links_) link->add_force(x, out);
+  for (const ModelForceElement& force_element : force_elements_) force_element->add_force(x, out);
 }
 
 void Workspace::add_single_force(const Single& single, const State& x, VectorXd& out) const {
   const Body& b = bodies_[single.body];
   Local local;
   gather(b, single.e, x, local);
-  FreeForce f = FreeForce::Zero(static_cast<Eigen::Index>(single.dofs.size()));
+  EulerianForce f = EulerianForce::Zero(static_cast<Eigen::Index>(single.dofs.size()));
   if (single.free) {
-    for (const BodyTerm& term : b.terms) term.with_free_lines().add_free_force(single.e, local, f);
+    for (const BodyTerm& term : b.terms)
+      term.with_eulerian_lines().add_eulerian_force(single.e, local, f);
   } else {
     LocalRows rows = LocalRows::Zero(local.q.rows(), local.q.cols());
     for (const BodyTerm& term : b.terms) term->add_force(single.e, local, rows);
@@ -147,26 +150,26 @@ void Workspace::add_single_tangent(const Single& single, const State& x, const W
   Local local;
   gather(b, single.e, x, local);
   const auto n = static_cast<Eigen::Index>(single.dofs.size());
-  FreeTangent tangent = FreeTangent::Zero(n, n);
+  EulerianTangent tangent = EulerianTangent::Zero(n, n);
   if (single.free) {
     for (const BodyTerm& term : b.terms)
-      term.with_free_lines().add_free_tangent(single.e, local, w, tangent);
+      term.with_eulerian_lines().add_eulerian_tangent(single.e, local, w, tangent);
   } else {
     LocalTangent rows = LocalTangent::Zero(n, n);
     for (const BodyTerm& term : b.terms) term->add_tangent(single.e, local, w, rows);
     tangent = rows;
   }
   const double* entry = tangent.data();
-  for (const int place : single.entries) {
-    if (place >= 0) values[place] += scale * *entry;
+  for (const int value_index : single.entries) {
+    if (value_index >= 0) values[value_index] += scale * *entry;
     ++entry;
   }
 }
 
 void Workspace::mean_force(const State& mean, const VectorXd& q0, const VectorXd& q1,
                            VectorXd& out) {
-  if (has_free_lines())
-    throw Error::input("integrator \"energy_momentum\" does not know free material lines");
+  if (has_eulerian_lines())
+    throw Error::input("integrator \"energy_momentum\" does not support free material lines");
   prepare(mean);
   out.setZero(n_dofs());
   LocalStep step;
@@ -182,7 +185,8 @@ void Workspace::mean_force(const State& mean, const VectorXd& q0, const VectorXd
         out.segment(b.first_dof + dim * vectors[static_cast<size_t>(k)], dim) += f.row(k);
     }
   }
-  for (const ModelLink& link : links_) link.with_mean_force().add_mean_force(mean, q0, q1, out);
+  for (const ModelForceElement& force_element : force_elements_)
+    force_element.with_mean_force().add_mean_force(mean, q0, q1, out);
 }
 
 void Workspace::joint_stiffness(const State& x, std::vector<Eigen::Triplet<double>>& out) const {
@@ -196,7 +200,7 @@ void Workspace::joint_stiffness(const State& x, std::vector<Eigen::Triplet<doubl
 
 std::vector<Eigen::Triplet<double>> Workspace::element_entries() const {
   std::vector<Eigen::Triplet<double>> entries;
-  for (const BatchPlaces& batch : batches_)
+  for (const BatchIndices& batch : batches_)
     for (int lane = 0; lane < batch.count; ++lane)
       for (size_t row = static_cast<size_t>(lane); row < batch.dofs.size(); row += kLanes)
         for (size_t column = static_cast<size_t>(lane); column < batch.dofs.size();
@@ -218,9 +222,10 @@ void Workspace::build_pattern() {
   std::vector<Eigen::Triplet<double>> stiffness;
   joint_stiffness(at, stiffness);
   entries.insert(entries.end(), stiffness.begin(), stiffness.end());
-  link_entries_.clear();
-  for (const ModelLink& link : links_) link->add_pattern(link_entries_);
-  entries.insert(entries.end(), link_entries_.begin(), link_entries_.end());
+  force_element_entries_.clear();
+  for (const ModelForceElement& force_element : force_elements_)
+    force_element->add_pattern(force_element_entries_);
+  entries.insert(entries.end(), force_element_entries_.begin(), force_element_entries_.end());
   for (const auto& entry : c.jacobian) {
     entries.emplace_back(n_dofs() + entry.row(), entry.col(), 1.0);
     entries.emplace_back(entry.col(), n_dofs() + entry.row(), 1.0);
@@ -229,37 +234,37 @@ void Workspace::build_pattern() {
   pattern_.setFromTriplets(entries.begin(), entries.end());
   pattern_.makeCompressed();
 
-  const auto place = [&](int row, int column) {
+  const auto value_index = [&](int row, int column) {
     const int* first = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[column];
     const int* last = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[column + 1];
     return static_cast<int>(std::lower_bound(first, last, row) - pattern_.innerIndexPtr());
   };
-  for (BatchPlaces& batch : batches_) {
+  for (BatchIndices& batch : batches_) {
     const size_t dim = static_cast<size_t>(bodies_[batch.body].element->dim());
     batch.entries.clear();
     batch.entries.reserve(batch.dofs.size() * batch.dofs.size() / (kLanes * dim));
     for (size_t column = 0; column < batch.dofs.size(); column += kLanes)
       for (size_t row = 0; row < batch.dofs.size(); row += dim * kLanes)
         for (size_t lane = 0; lane < kLanes; ++lane)
-          batch.entries.push_back(place(batch.dofs[row + lane], batch.dofs[column + lane]));
+          batch.entries.push_back(value_index(batch.dofs[row + lane], batch.dofs[column + lane]));
   }
   for (Single& single : singles_) {
     single.entries.clear();
     for (const int row : single.dofs)
       for (const int column : single.dofs)
-        single.entries.push_back(row >= 0 && column >= 0 ? place(row, column) : -1);
+        single.entries.push_back(row >= 0 && column >= 0 ? value_index(row, column) : -1);
   }
-  const auto places_of = [&](const std::vector<Eigen::Triplet<double>>& of) {
+  const auto value_indices_of = [&](const std::vector<Eigen::Triplet<double>>& of) {
     std::vector<int> out;
-    for (const auto& entry : of) out.push_back(place(entry.row(), entry.col()));
+    for (const auto& entry : of) out.push_back(value_index(entry.row(), entry.col()));
     return out;
   };
-  stiffness_places_ = places_of(stiffness);
-  link_places_ = places_of(link_entries_);
-  joint_places_.clear();
+  stiffness_indices_ = value_indices_of(stiffness);
+  force_element_indices_ = value_indices_of(force_element_entries_);
+  joint_indices_.clear();
   for (const auto& entry : c.jacobian) {
-    joint_places_.push_back(place(n_dofs() + entry.row(), entry.col()));
-    joint_places_.push_back(place(entry.col(), n_dofs() + entry.row()));
+    joint_indices_.push_back(value_index(n_dofs() + entry.row(), entry.col()));
+    joint_indices_.push_back(value_index(entry.col(), n_dofs() + entry.row()));
   }
   built_version_ = pattern_version();
 }
@@ -269,48 +274,54 @@ void Workspace::kkt(const State& x, const Constraints& c, const Weights& w, doub
   prepare(x);
   clear(out);
   double* values = out.valuePtr();
-  for_batches(x, kTangentsPerThread, [&](const Batch& batch, const BatchPlaces& places) {
-    Lanes tangent[kMaxLocal * kMaxLocal];
+  for_batches(x, kTangentsPerThread, [&](const Batch& batch, const BatchIndices& value_indices) {
+    Pack tangent[kMaxLocal * kMaxLocal];
     const int n = batch.n_local();
-    std::fill(tangent, tangent + n * n, Lanes{});
-    for (const BodyTerm& term : bodies_[places.body].terms) term.add_tangents(batch, w, tangent);
-    const Lanes* entry = tangent;  // by columns
-    const int* place = places.entries.data();
-    for (int run = 0; run < n * batch.n_shapes; ++run, entry += batch.dim, place += kLanes)
+    std::fill(tangent, tangent + n * n, Pack{});
+    for (const BodyTerm& term : bodies_[value_indices.body].terms)
+      term.add_tangents(batch, w, tangent);
+    const Pack* entry = tangent;  // by columns
+    const int* value_index = value_indices.entries.data();
+    for (int run = 0; run < n * batch.n_shapes; ++run, entry += batch.dim, value_index += kLanes)
       for (int lane = 0; lane < batch.count; ++lane)
-        for (int c = 0; c < batch.dim; ++c) values[place[lane] + c] += scale * entry[c][lane];
+        for (int c = 0; c < batch.dim; ++c) values[value_index[lane] + c] += scale * entry[c][lane];
   });
   for (const Single& single : singles_) add_single_tangent(single, x, w, scale, values);
-  link_entries_.clear();
-  for (const ModelLink& link : links_) link->add_tangent(x, w, link_entries_);
-  add_link_entries(scale, values);
+  force_element_entries_.clear();
+  for (const ModelForceElement& force_element : force_elements_)
+    force_element->add_tangent(x, w, force_element_entries_);
+  add_force_element_entries(scale, values);
   fill_joints(x, scale * w.q, c, c, out);
 }
 
 void Workspace::add_transposed_product(const State& x, const Weights& w, const VectorXd& psi,
                                        VectorXd& out) {
-  if (has_free_lines())
-    throw Error::input("products without a matrix do not know free material lines");
+  if (has_eulerian_lines())
+    throw Error::input(
+        "matrix-free products are not available for bodies with unknown material coordinates");
   prepare(x);
-  for_batches(x, kTangentsPerThread, [&](const Batch& batch, const BatchPlaces& places) {
-    Lanes tangent[kMaxLocal * kMaxLocal], own[kMaxLocal];
+  for_batches(x, kTangentsPerThread, [&](const Batch& batch, const BatchIndices& value_indices) {
+    Pack tangent[kMaxLocal * kMaxLocal], own[kMaxLocal];
     const int n = batch.n_local();
-    std::fill(tangent, tangent + n * n, Lanes{});
-    for (const BodyTerm& term : bodies_[places.body].terms) term.add_tangents(batch, w, tangent);
-    const int* dof = places.dofs.data();
+    std::fill(tangent, tangent + n * n, Pack{});
+    for (const BodyTerm& term : bodies_[value_indices.body].terms)
+      term.add_tangents(batch, w, tangent);
+    const int* dof = value_indices.dofs.data();
     for (int k = 0; k < n; ++k, dof += kLanes)
       for (int lane = 0; lane < kLanes; ++lane) own[k][lane] = psi.data()[dof[lane]];
-    const Lanes* entry = tangent;  // by columns
-    dof = places.dofs.data();
+    const Pack* entry = tangent;  // by columns
+    dof = value_indices.dofs.data();
     for (int column = 0; column < n; ++column, entry += n, dof += kLanes) {
-      Lanes sum{};
+      Pack sum{};
       for (int k = 0; k < n; ++k) sum += entry[k] * own[k];
       for (int lane = 0; lane < batch.count; ++lane) out.data()[dof[lane]] += sum[lane];
     }
   });
-  link_entries_.clear();
-  for (const ModelLink& link : links_) link->add_tangent(x, w, link_entries_);
-  for (const auto& entry : link_entries_) out[entry.col()] += entry.value() * psi[entry.row()];
+  force_element_entries_.clear();
+  for (const ModelForceElement& force_element : force_elements_)
+    force_element->add_tangent(x, w, force_element_entries_);
+  for (const auto& entry : force_element_entries_)
+    out[entry.col()] += entry.value() * psi[entry.row()];
 }
 
 void Workspace::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& q1,
@@ -321,7 +332,7 @@ void Workspace::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& 
   double* values = out.valuePtr();
   LocalStep step;
   LocalTangent tangent;
-  for (const BatchPlaces& batch : batches_) {
+  for (const BatchIndices& batch : batches_) {
     const Body& b = bodies_[batch.body];
     const int dim = b.element->dim();
     for (int lane = 0; lane < batch.count; ++lane) {
@@ -329,22 +340,23 @@ void Workspace::mean_kkt(const State& mean, const VectorXd& q0, const VectorXd& 
       tangent.setZero(step.start.size(), step.start.size());
       for (const BodyTerm& term : b.terms)
         term.with_mean_force().add_mean_tangent(batch.first + lane, step, w, tangent);
-      const int* place = batch.entries.data() + lane;
+      const int* value_index = batch.entries.data() + lane;
       for (Eigen::Index column = 0; column < tangent.cols(); ++column)
-        for (Eigen::Index row = 0; row < tangent.rows(); row += dim, place += kLanes)
-          for (int c = 0; c < dim; ++c) values[*place + c] += scale * tangent(row + c, column);
+        for (Eigen::Index row = 0; row < tangent.rows(); row += dim, value_index += kLanes)
+          for (int c = 0; c < dim; ++c)
+            values[*value_index + c] += scale * tangent(row + c, column);
     }
   }
-  link_entries_.clear();
-  for (const ModelLink& link : links_)
-    link.with_mean_force().add_mean_tangent(mean, q0, q1, w, link_entries_);
-  add_link_entries(scale, values);
+  force_element_entries_.clear();
+  for (const ModelForceElement& force_element : force_elements_)
+    force_element.with_mean_force().add_mean_tangent(mean, q0, q1, w, force_element_entries_);
+  add_force_element_entries(scale, values);
   fill_joints(mean, scale * w.q, at_end, at_mean, out);
 }
 
-void Workspace::add_link_entries(double scale, double* values) const {
-  for (size_t k = 0; k < link_entries_.size(); ++k)
-    values[link_places_[k]] += scale * link_entries_[k].value();
+void Workspace::add_force_element_entries(double scale, double* values) const {
+  for (size_t k = 0; k < force_element_entries_.size(); ++k)
+    values[force_element_indices_[k]] += scale * force_element_entries_[k].value();
 }
 
 void Workspace::clear(SparseMatrix& out) {
@@ -356,14 +368,14 @@ void Workspace::clear(SparseMatrix& out) {
 void Workspace::fill_joints(const State& x, double stiffness_scale, const Constraints& rows,
                             const Constraints& columns, SparseMatrix& out) {
   double* values = out.valuePtr();
-  if (stiffness_scale != 0 && !stiffness_places_.empty()) {
+  if (stiffness_scale != 0 && !stiffness_indices_.empty()) {
     joint_stiffness(x, stiffness_);
     for (size_t k = 0; k < stiffness_.size(); ++k)
-      values[stiffness_places_[k]] += stiffness_scale * stiffness_[k].value();
+      values[stiffness_indices_[k]] += stiffness_scale * stiffness_[k].value();
   }
   for (size_t k = 0; k < rows.jacobian.size(); ++k) {
-    values[joint_places_[2 * k]] += rows.jacobian[k].value();
-    values[joint_places_[2 * k + 1]] += columns.jacobian[k].value();
+    values[joint_indices_[2 * k]] += rows.jacobian[k].value();
+    values[joint_indices_[2 * k + 1]] += columns.jacobian[k].value();
   }
 }
 

@@ -37,7 +37,7 @@ struct VectorOf<8> {
 /// are independent of the width, and the alignment fits the widest registers; therefore kernels for
 /// all processors share the memory (geometry/vector_level.h).
 template <int kWidth>
-struct alignas(kLanes * sizeof(double)) [[gnu::may_alias]] LanesOf {
+struct alignas(kLanes * sizeof(double)) [[gnu::may_alias]] PackOf {
   /// Vector type of the compiler.
   using Vector = typename VectorOf<kWidth>::Type;
   static constexpr int kParts = kLanes / kWidth;  ///< Number of vectors in a pack.
@@ -48,73 +48,73 @@ struct alignas(kLanes * sizeof(double)) [[gnu::may_alias]] LanesOf {
   double operator[](std::size_t lane) const { return reinterpret_cast<const double*>(part)[lane]; }
 
   /// Adds a pack lane by lane.
-  LanesOf& operator+=(const LanesOf& x) { return *this = *this + x; }
+  PackOf& operator+=(const PackOf& x) { return *this = *this + x; }
   /// Subtracts a pack lane by lane.
-  LanesOf& operator-=(const LanesOf& x) { return *this = *this - x; }
+  PackOf& operator-=(const PackOf& x) { return *this = *this - x; }
   /// Multiplies by a pack lane by lane.
-  LanesOf& operator*=(const LanesOf& x) { return *this = *this * x; }
+  PackOf& operator*=(const PackOf& x) { return *this = *this * x; }
   /// Multiplies all lanes by a number.
-  LanesOf& operator*=(double x) { return *this = *this * x; }
+  PackOf& operator*=(double x) { return *this = *this * x; }
   /// Divides by a pack lane by lane.
-  LanesOf& operator/=(double x) { return *this = *this / x; }
+  PackOf& operator/=(double x) { return *this = *this / x; }
 
-  friend LanesOf operator-(const LanesOf& x) {
+  friend PackOf operator-(const PackOf& x) {
     return by_parts([&](int k) { return -x.part[k]; });
   }
-  friend LanesOf operator+(const LanesOf& x, const LanesOf& y) {
+  friend PackOf operator+(const PackOf& x, const PackOf& y) {
     return by_parts([&](int k) { return x.part[k] + y.part[k]; });
   }
-  friend LanesOf operator-(const LanesOf& x, const LanesOf& y) {
+  friend PackOf operator-(const PackOf& x, const PackOf& y) {
     return by_parts([&](int k) { return x.part[k] - y.part[k]; });
   }
-  friend LanesOf operator*(const LanesOf& x, const LanesOf& y) {
+  friend PackOf operator*(const PackOf& x, const PackOf& y) {
     return by_parts([&](int k) { return x.part[k] * y.part[k]; });
   }
-  friend LanesOf operator/(const LanesOf& x, const LanesOf& y) {
+  friend PackOf operator/(const PackOf& x, const PackOf& y) {
     return by_parts([&](int k) { return x.part[k] / y.part[k]; });
   }
-  friend LanesOf operator+(const LanesOf& x, double y) {
+  friend PackOf operator+(const PackOf& x, double y) {
     return by_parts([&](int k) { return x.part[k] + y; });
   }
-  friend LanesOf operator-(const LanesOf& x, double y) {
+  friend PackOf operator-(const PackOf& x, double y) {
     return by_parts([&](int k) { return x.part[k] - y; });
   }
-  friend LanesOf operator*(const LanesOf& x, double y) {
+  friend PackOf operator*(const PackOf& x, double y) {
     return by_parts([&](int k) { return x.part[k] * y; });
   }
-  friend LanesOf operator/(const LanesOf& x, double y) {
+  friend PackOf operator/(const PackOf& x, double y) {
     return by_parts([&](int k) { return x.part[k] / y; });
   }
-  friend LanesOf operator-(double x, const LanesOf& y) {
+  friend PackOf operator-(double x, const PackOf& y) {
     return by_parts([&](int k) { return x - y.part[k]; });
   }
-  friend LanesOf operator*(double x, const LanesOf& y) { return y * x; }
-  friend LanesOf operator/(double x, const LanesOf& y) {
+  friend PackOf operator*(double x, const PackOf& y) { return y * x; }
+  friend PackOf operator/(double x, const PackOf& y) {
     return by_parts([&](int k) { return x / y.part[k]; });
   }
 
  private:
   template <class Part>
-  static LanesOf by_parts(const Part& of) {
-    LanesOf out;
+  static PackOf by_parts(const Part& of) {
+    PackOf out;
 #pragma GCC unroll 8
     for (int k = 0; k < kParts; ++k) out.part[k] = of(k);
     return out;
   }
 };
 
-static_assert(sizeof(LanesOf<2>) == 64 && sizeof(LanesOf<4>) == 64 && sizeof(LanesOf<8>) == 64);
+static_assert(sizeof(PackOf<2>) == 64 && sizeof(PackOf<4>) == 64 && sizeof(PackOf<8>) == 64);
 
 /// Pack in the width that all code except kernels uses.
-using Lanes = LanesOf<2>;
+using Pack = PackOf<2>;
 
 /// Returns the same packs as packs of another vector width.
 template <class V>
-inline const V* lanes_as(const Lanes* x) {
+inline const V* packs_as(const Pack* x) {
   return reinterpret_cast<const V*>(x);
 }
 template <class V>
-inline V* lanes_as(Lanes* x) {
+inline V* packs_as(Pack* x) {
   return reinterpret_cast<V*>(x);
 }
 
@@ -123,7 +123,7 @@ inline V* lanes_as(Lanes* x) {
 template <class Kernel>
 inline void run_batch_kernel(const Kernel& kernel) {
   run_kernel([&]<int kBytes> {
-    kernel.template operator()<LanesOf<kBytes / static_cast<int>(sizeof(double))>>();
+    kernel.template operator()<PackOf<kBytes / static_cast<int>(sizeof(double))>>();
   });
 }
 
@@ -136,7 +136,7 @@ struct Batch {
   int n_shapes = 0, dim = 0;      ///< Number of shape functions, and number of directions in space.
 
   /// Unknowns, rates and accelerations (n_shapes dim each).
-  const Lanes *q = nullptr, *v = nullptr, *a = nullptr;
+  const Pack *q = nullptr, *v = nullptr, *a = nullptr;
 
   /// Returns the number of unknowns of one element.
   int n_local() const { return n_shapes * dim; }
@@ -145,8 +145,8 @@ struct Batch {
 /// Size of the vector registers that a pack type uses [bytes].
 template <class V>
 inline constexpr int kBytesOf = 16;
-/// Size of the vector registers of LanesOf<kWidth> [bytes].
+/// Size of the vector registers of PackOf<kWidth> [bytes].
 template <int kWidth>
-inline constexpr int kBytesOf<LanesOf<kWidth>> = kWidth* static_cast<int>(sizeof(double));
+inline constexpr int kBytesOf<PackOf<kWidth>> = kWidth* static_cast<int>(sizeof(double));
 
 }  // namespace flexmorph::fem

@@ -23,12 +23,12 @@ void GramGradient::correction(const Term& term, int e, const LocalStep& x, Corre
   constexpr double kRigid = 1e-7;
   const Square gram = out.middle * out.middle.transpose();
   if (out.norm <= kRigid * kRigid * gram.squaredNorm()) {
-    out.norm = out.defect = 0;
+    out.norm = out.error = 0;
     return;
   }
   const double start = term.strain_energy(e, {x.start, x.mean.v, x.mean.a}),
                end = term.strain_energy(e, {x.end, x.mean.v, x.mean.a});
-  out.defect = end - start - out.force.cwiseProduct(d).sum();
+  out.error = end - start - out.force.cwiseProduct(d).sum();
 }
 
 void GramGradient::add_force(const Term& term, int e, const LocalStep& x, LocalRows& force) const {

@@ -43,11 +43,11 @@ class GramGradient {
  private:
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxShapes, kMaxShapes>;
   struct Correction {
-    Square relative, change;      // L, A
-    LocalRows middle;             // L q̄
-    LocalRows force;              // f(q̄)
-    double defect = 0, norm = 0;  // energy error R, |A|²
-    double factor() const { return norm > 0 ? 2 * defect / norm : 0; }
+    Square relative, change;     // L, A
+    LocalRows middle;            // L q̄
+    LocalRows force;             // f(q̄)
+    double error = 0, norm = 0;  // energy error R, |A|²
+    double factor() const { return norm > 0 ? 2 * error / norm : 0; }
   };
   void correction(const Term& term, int e, const LocalStep& x, Correction& out) const;
 

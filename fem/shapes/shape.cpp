@@ -109,7 +109,7 @@ const GaussRule& gauss(int n) {
     for (int k = 1; k <= kMaxGauss; ++k) all[static_cast<size_t>(k)] = make_gauss(k);
     return all;
   }();
-  if (n < 1 || n > kMaxGauss) throw Error::input("gauss: order out of range");
+  if (n < 1 || n > kMaxGauss) throw Error::input("gauss: the number of points is out of range");
   return rules[static_cast<size_t>(n)];
 }
 

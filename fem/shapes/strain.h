@@ -127,9 +127,9 @@ struct StrainTable {
 
 /// The data from which a strain table is filled.
 struct StrainSource {
-  const Element& element;  ///< Elements of the body.
-  const Factors& factors;  ///< Scale factors of the design.
-  MatrixXd reference;      ///< Reference values, see Element::reference().
+  const Element& element;       ///< Elements of the body.
+  const ScaleFactors& factors;  ///< Scale factors of the design.
+  MatrixXd reference;           ///< Reference values, see Element::reference().
 };
 
 /// Interface of the sampling of the strains of an element: the points, and the interpolation

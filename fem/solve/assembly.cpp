@@ -9,11 +9,11 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr int kMostIterations = 60;
+constexpr int kMaxIterations = 60;
 constexpr double kTolerance = 1e-12;  // allowed violation of joints relative to the model's size
 constexpr double kCompliance = 1e-9;  // δ of the first Newton step
-constexpr double kLeastCompliance = 1e-14;  // after full steps, and for velocities
-constexpr double kMostCompliance = 1e6;     // largest δ; the assembly fails above it
+constexpr double kMinCompliance = 1e-14;  // after full steps, and for velocities
+constexpr double kMaxCompliance = 1e6;    // largest δ; the assembly fails above it
 constexpr double kPartOfIdentity = 1e-8;  // fraction of the mean mass that is added to the diagonal
 
 std::string number(double value) { return formatted("%.3g", value); }
@@ -74,7 +74,7 @@ class Correction {
 
   Workspace& model_;
   SparseMatrix kkt_, shift_, sum_;
-  UnsymmetricSolver solver_;
+  DirectSolver solver_;
   VectorXd scale_, diagonal_, right_, solution_, change_;
   double typical_ = 1;
   bool fresh_ = true;
@@ -83,10 +83,11 @@ class Correction {
 [[noreturn]] void fail(Workspace& model, const State& x, const VectorXd& miss, int iterations) {
   const auto joints = heaviest_joints(model, miss, 0.01);
   const double largest = weights_of_joints(model, miss).lpNorm<Eigen::Infinity>();
-  std::string text = "assembly: no position at t = " + number(x.t) + " s that joins all: joint '" +
-                     joints[0] + "' misses by " + number(largest) + " m after " +
-                     std::to_string(iterations) + " iterations";
-  if (joints.size() > 1) text += "; with it " + list_joints({joints.begin() + 1, joints.end()});
+  std::string text = "assembly: no position at t = " + number(x.t) +
+                     " s meets all joints: the error of joint '" + joints[0] + "' is " +
+                     number(largest) + " m after " + std::to_string(iterations) + " iterations";
+  if (joints.size() > 1)
+    text += "; other joints with errors: " + list_joints({joints.begin() + 1, joints.end()});
   const Diagnosis diagnosis = diagnose(model, x);
   if (diagnosis.is_contradictory()) text += "; " + describe(diagnosis);
   throw Error::numerical(text);
@@ -113,19 +114,19 @@ class Assembler {
  private:
   void find_position() {
     double delta = kCompliance;
-    int idle = 0;  // consecutive steps that hardly reduced the violation
+    int unloaded = 0;  // consecutive steps that hardly reduced the violation
     for (report_.iterations = 0;; ++report_.iterations) {
       const VectorXd miss = rows_.misses();
       report_.miss = miss.lpNorm<Eigen::Infinity>();
       if (report_.miss <= kTolerance * model_size(rows_.scales(), x_.q)) return;
-      if (report_.iterations >= kMostIterations || idle > 5 || delta > kMostCompliance)
+      if (report_.iterations >= kMaxIterations || unloaded > 5 || delta > kMaxCompliance)
         fail(model_, x_, miss, report_.iterations);
       correction_.factorize(x_, rows_, delta);
       const double part = search(correction_.solve(miss), miss);
       const double left = rows_.misses().squaredNorm() / miss.squaredNorm();
-      idle = left > 1 - 1e-3 ? idle + 1 : 0;
+      unloaded = left > 1 - 1e-3 ? unloaded + 1 : 0;
       if (part == 1)
-        delta = std::max(kLeastCompliance, delta / 100);
+        delta = std::max(kMinCompliance, delta / 100);
       else
         delta *= part == 0 ? 1000 : 10;
     }
@@ -153,7 +154,7 @@ class Assembler {
 
   /// Applies the smallest change of v. It is repeated because δ leaves a fraction of the error.
   void find_velocity() {
-    correction_.factorize(x_, rows_, kLeastCompliance);
+    correction_.factorize(x_, rows_, kMinCompliance);
     double size =
         0;  // largest speed of all passes, because a model that stops has no scale of its own
     for (int pass = 0;; ++pass) {
@@ -164,9 +165,10 @@ class Assembler {
       const double largest = miss.lpNorm<Eigen::Infinity>();
       if (largest <= 1e-14 * size || (pass >= 3 && largest <= 1e-9 * size)) return;
       if (pass >= 6)
-        throw Error::numerical(
-            "assembly: no velocity at t = " + number(x_.t) + " s that all joints allow: joint '" +
-            heaviest_joints(model_, miss, 1)[0] + "' misses by " + number(largest) + " m/s");
+        throw Error::numerical("assembly: no velocity at t = " + number(x_.t) +
+                               " s meets all joints: the error of joint '" +
+                               heaviest_joints(model_, miss, 1)[0] + "' is " + number(largest) +
+                               " m/s");
       x_.v += correction_.solve(miss);
     }
   }
@@ -183,10 +185,10 @@ class Assembler {
 
 Assembly assemble(Workspace& model, State& x) {
   if (x.q.size() != model.n_dofs() || x.v.size() != model.n_dofs())
-    throw Error::input("assembly: a state of " + std::to_string(x.q.size()) +
-                       " unknowns for a model of " + std::to_string(model.n_dofs()));
+    throw Error::input("assembly: the state has " + std::to_string(x.q.size()) +
+                       " unknowns, but the model has " + std::to_string(model.n_dofs()));
   if (!x.q.allFinite() || !x.v.allFinite())
-    throw Error::input("assembly: the start holds numbers that are not finite");
+    throw Error::input("assembly: the initial state contains numbers that are not finite");
   if (x.a.size() != model.n_dofs()) x.a.setZero(model.n_dofs());
   return Assembler(model, x).run();
 }

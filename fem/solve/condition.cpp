@@ -24,7 +24,7 @@ VectorXd unit_scales(const SparseMatrix& a) {
 }  // namespace
 
 double condition_estimate(SparseMatrix a) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
+  constexpr double kSingular = std::numeric_limits<double>::infinity();
   if (a.rows() == 0) return 1;
   a.makeCompressed();
   const VectorXd scales = unit_scales(a);
@@ -36,9 +36,9 @@ double condition_estimate(SparseMatrix a) {
     solver.analyze(a);
     solver.factorize(a);
     const double out = solver.condition(a);
-    return out >= 1 ? out : kNone;  // NaN counts as singular
+    return out >= 1 ? out : kSingular;  // NaN counts as singular
   } catch (const Error&) {
-    return kNone;
+    return kSingular;
   }
 }
 

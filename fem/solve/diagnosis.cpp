@@ -19,7 +19,8 @@ constexpr double kConsistent = 1e-8;  // relative to the terms that add up to ze
 constexpr double kRoundOff = 1e-10;
 constexpr double kShift = 1e-14;     // shift of the Gram matrix of ConstraintWatch
 constexpr double kSurelyNew = 1e-4;  // above it the Gram matrix is accurate enough
-constexpr double kOwn = 0.1;  // smallest entry alone in its column that proves a row independent
+constexpr double kSeparatingEntry =
+    0.1;  // smallest entry alone in its column that proves a row independent
 
 std::string number(double value) { return formatted("%.3g", value); }
 
@@ -94,7 +95,7 @@ std::vector<int> entangled_rows(const SparseMatrix& j) {
     alone.pop_back();
     if (left[static_cast<size_t>(column)] != 1) continue;
     const auto row = static_cast<int>(sum[static_cast<size_t>(column)]);
-    if (std::abs(j.coeff(row, column)) < kOwn) continue;
+    if (std::abs(j.coeff(row, column)) < kSeparatingEntry) continue;
     free[static_cast<size_t>(row)] = 1;
     for (RowMajor::InnerIterator e(by_row, row); e; ++e) {
       if (!counts(e.value())) continue;
@@ -183,8 +184,8 @@ NullVector without(const NullVector& a, const NullVector& b, int row, int m) {
 
 /// Subtracts null vectors from each other as long as one of them then involves fewer joints.
 void shorten(std::vector<NullVector>& all, const std::vector<int>& joint_of) {
-  constexpr size_t kMost = 60;  // longer lists are of no use to a reader
-  if (all.size() > kMost) return;
+  constexpr size_t kMaxListed = 60;  // longer lists are of no use to a reader
+  if (all.size() > kMaxListed) return;
   const int m = static_cast<int>(joint_of.size());
   for (bool shorter = true; shorter;) {
     shorter = false;
@@ -223,12 +224,12 @@ std::string describe(const DependentGroup& g) {
   const bool one = g.joints.size() == 1;
   std::string out = list_joints(g.joints);
   if (!g.contradictory) {
-    out += one ? " holds " : " hold ";
-    out +=
-        g.surplus == 1 ? "the same freedom" : "the same " + std::to_string(g.surplus) + " freedoms";
-    return one ? out + " twice" : out;
+    out += one ? " constrains " : " constrain ";
+    out += g.surplus == 1 ? "one degree of freedom"
+                          : std::to_string(g.surplus) + " degrees of freedom";
+    return out + (one ? " a second time" : " more than once");
   }
-  out += one ? " contradicts itself: its rows miss by " : " contradict each other: they miss by ";
+  out += one ? " contradicts itself: its error is " : " contradict each other: their error is ";
   if (g.miss > 0) return out + number(g.miss) + " m";
   if (g.rate_miss > 0) return out + number(g.rate_miss) + " m/s in velocity";
   return out + number(g.acceleration_miss) + " m/s² in acceleration";
@@ -298,19 +299,20 @@ int degrees_of_freedom(Workspace& model, const State& x) {
 }
 
 std::string describe(const Diagnosis& diagnosis) {
-  constexpr size_t kMost = 10;
+  constexpr size_t kMaxListed = 10;
   std::vector<const DependentGroup*> groups;
   // contradictions first, because they must be changed first
   for (const bool contradictory : {true, false})
     for (const DependentGroup& g : diagnosis.groups)
       if (g.contradictory == contradictory) groups.push_back(&g);
   std::string out;
-  for (size_t i = 0; i < std::min(groups.size(), kMost); ++i) {
+  for (size_t i = 0; i < std::min(groups.size(), kMaxListed); ++i) {
     if (i > 0) out += "\n";
     out += describe(*groups[i]);
   }
-  if (groups.size() > kMost)
-    out += "\nand " + std::to_string(groups.size() - kMost) + " groups of joints more";
+  if (groups.size() > kMaxListed)
+    out +=
+        "\n" + std::to_string(groups.size() - kMaxListed) + " more groups of joints are not listed";
   return out;
 }
 
@@ -331,7 +333,7 @@ Conditioning ConstraintWatch::look(const State& x) {
   }
   factor_.factorize(gram_);
   if (factor_.info() != Eigen::Success)
-    throw Error::numerical("watch of constraints: the factorization failed at t = " + number(x.t) +
+    throw Error::numerical("check of constraints: the factorization failed at t = " + number(x.t) +
                            " s");
   // A deterministic start vector with components in all rows: multiples of the golden section.
   z_.resize(m);
@@ -363,8 +365,8 @@ double constraint_condition(Workspace& model, const State& x) {
 }
 
 std::string describe(const Conditioning& c) {
-  return "constraints are nearly dependent at t = " + number(c.t) + " s: condition " +
-         number(c.condition) + ", " + list_joints(c.joints);
+  return "constraints are nearly dependent at t = " + number(c.t) + " s: the condition number is " +
+         number(c.condition) + ", mainly caused by " + list_joints(c.joints);
 }
 
 }  // namespace flexmorph::fem

@@ -63,7 +63,8 @@ Diagnosis diagnose(Workspace& model, const State& x);
 /// Returns the number of unknowns minus the rank of Φ_q.
 int degrees_of_freedom(Workspace& model, const State& x);
 
-/// Returns a text with one line per group: "joints 'pin', 'drive' hold the same freedom" or "joints
+/// Returns a text with one line per group: "joints 'pin', 'drive' hold the same degree of freedom"
+/// or "joints
 /// ... contradict each other: they miss by 0.012 m". Contradictions come first, and the text has at
 /// most ten groups. It is empty if all rows are independent.
 std::string describe(const Diagnosis& diagnosis);

@@ -20,7 +20,9 @@ Kinematics::Kinematics(Workspace& model, State start, const KinematicsSettings& 
     : model_(model), settings_(settings), x_(std::move(start)) {
   if (!(settings.smallest_step > 0 && settings.largest_step >= settings.smallest_step &&
         settings.correction > 0))
-    throw Error::input("kinematics: steps and correction are positive, smallest_step first");
+    throw Error::input(
+        "kinematics: the step sizes and the correction must be positive, and smallest_step must "
+        "not be above largest_step");
   const int n = model.n_dofs();
   assemble(model, x_);
   const Diagnosis diagnosis = diagnose(model, x_);
@@ -28,12 +30,12 @@ Kinematics::Kinematics(Workspace& model, State start, const KinematicsSettings& 
   if (const int left = diagnosis.degrees_of_freedom(); left > 0) {
     const std::string hint = describe(diagnosis);
     throw Error::input("kinematics: " + std::to_string(left) +
-                       (left == 1 ? " freedom is" : " freedoms are") + " not driven" +
-                       (hint.empty() ? "" : "; " + hint));
+                       (left == 1 ? " degree of freedom is" : " degrees of freedom are") +
+                       " not driven" + (hint.empty() ? "" : "; " + hint));
   }
-  place_of_row_.assign(static_cast<size_t>(model.n_constraints()), -1);
+  index_of_row_.assign(static_cast<size_t>(model.n_constraints()), -1);
   for (int i = 0; i < n; ++i)
-    place_of_row_[static_cast<size_t>(diagnosis.independent[static_cast<size_t>(i)])] = i;
+    index_of_row_[static_cast<size_t>(diagnosis.independent[static_cast<size_t>(i)])] = i;
   x_.lambda.setZero(model.n_constraints());
   rows_.evaluate(model_, x_);
   size_ = model_size(rows_.scales(), x_.q);
@@ -47,7 +49,7 @@ bool Kinematics::factorize(const State& x) {
   const SparseMatrix& j = rows_.jacobian();
   for (int column = 0; column < j.cols(); ++column)
     for (SparseMatrix::InnerIterator it(j, column); it; ++it)
-      if (const int row = place_of_row_[static_cast<size_t>(it.row())]; row >= 0)
+      if (const int row = index_of_row_[static_cast<size_t>(it.row())]; row >= 0)
         entries_.emplace_back(row, column, it.value());
   const bool fresh = square_.rows() == 0;
   square_.resize(j.cols(), j.cols());
@@ -60,8 +62,8 @@ bool Kinematics::factorize(const State& x) {
 /// Computes out = S⁻¹ (J⁻¹ R right).
 void Kinematics::solve(const VectorXd& right, VectorXd& out) const {
   right_.resize(model_.n_dofs());
-  for (size_t i = 0; i < place_of_row_.size(); ++i)
-    if (const int row = place_of_row_[i]; row >= 0) {
+  for (size_t i = 0; i < index_of_row_.size(); ++i)
+    if (const int row = index_of_row_[i]; row >= 0) {
       const auto k = static_cast<Eigen::Index>(i);
       right_[row] = rows_.row_scale()[k] * right[k];
     }
@@ -107,12 +109,12 @@ bool Kinematics::step_to(double t) {
   const double corrected = scales.cwiseProduct(trial_.q - predicted).lpNorm<Eigen::Infinity>();
   if (corrected > settings_.correction * std::max(motion, 0.2 * size_)) return false;
   VectorXd surplus = rows_.misses();
-  for (size_t i = 0; i < place_of_row_.size(); ++i)
-    if (place_of_row_[i] >= 0) surplus[static_cast<Eigen::Index>(i)] = 0;
+  for (size_t i = 0; i < index_of_row_.size(); ++i)
+    if (index_of_row_[i] >= 0) surplus[static_cast<Eigen::Index>(i)] = 0;
   if (surplus.lpNorm<Eigen::Infinity>() > 1e-9 * size_)
     throw Error::numerical(
-        "kinematics: redundant at the start, but at t = " + time_text(t) +
-        " s they contradict the others: " + list_joints(heaviest_joints(model_, surplus, 0.01)));
+        "kinematics: constraints that are redundant at the start contradict the others at t = " +
+        time_text(t) + " s: " + list_joints(heaviest_joints(model_, surplus, 0.01)));
   find_rates(trial_);
   std::swap(x_, trial_);
   return true;
@@ -121,10 +123,12 @@ bool Kinematics::step_to(double t) {
 void Kinematics::give_up(double refused) {
   const double t = 0.5 * (x_.t + refused);
   const Conditioning now = ConstraintWatch(model_).look(x_);
-  const std::string where = "kinematics: path cannot be reached at t = " + time_text(t) + " s, ";
+  const std::string where =
+      "kinematics: the prescribed path cannot be reached at t = " + time_text(t) + " s, ";
   if (now.condition > kSingular) {
     throw Error::numerical(where + list_joints(now.joints) +
-                           ": singular position (dead centre, or too short to reach)");
+                           ": the position is singular (the mechanism is at a dead centre, or its "
+                           "members are too short to reach the position)");
   }
   // The position is not singular. If only the time is advanced, the joint that jumps has the
   // largest violation.
@@ -132,14 +136,14 @@ void Kinematics::give_up(double refused) {
   trial_.t = refused;
   rows_.evaluate(model_, trial_);
   const auto joints = heaviest_joints(model_, rows_.misses(), 0.1);
-  throw Error::numerical(where + list_joints(joints) + ": does a drive jump there?");
+  throw Error::numerical(where + list_joints(joints) + ": a drive may jump there");
 }
 
 const State& Kinematics::at(double t) {
   if (!follow(t, settings_.most_steps))
     throw Error::numerical("kinematics: at t = " + time_text(x_.t) + " s after " +
                            std::to_string(settings_.most_steps) +
-                           " steps: what drives it is too fast to be followed");
+                           " steps: the drives are too fast");
   return x_;
 }
 

@@ -71,7 +71,7 @@ class Kinematics {
   double sign_ = 0;  // sign of det Φ_q on this branch
   double size_ = 1;  // size of the model [m]
   // row in the square matrix of every constraint row; -1: left out
-  std::vector<int> place_of_row_;
+  std::vector<int> index_of_row_;
   ScaledConstraints rows_;
   SparseMatrix square_;
   Eigen::SparseLU<SparseMatrix> lu_;

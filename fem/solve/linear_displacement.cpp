@@ -14,7 +14,7 @@ VectorXd linear_displacement(Workspace& model, const State& x) {
   model.force(at, residual);
   model.kkt(at, c, {1, 0, 0}, 1, kkt);
   right << -residual, -c.value;
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   solver.analyze(kkt);
   solver.factorize(kkt);
   solver.solve(kkt, right, step);

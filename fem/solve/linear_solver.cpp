@@ -12,11 +12,11 @@ namespace flexmorph::fem {
 namespace {
 
 /// Size below which factoring the whole matrix costs no more than updating the border.
-constexpr size_t kFewestRenewed = 1500;
+constexpr size_t kMinRenewedUnknowns = 1500;
 
 }  // namespace
 
-struct UnsymmetricSolver::Impl {
+struct DirectSolver::Impl {
   void* symbolic = nullptr;
   void* numeric = nullptr;
   double control[UMFPACK_CONTROL];
@@ -39,25 +39,26 @@ struct UnsymmetricSolver::Impl {
   void solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine, bool transposed);
 };
 
-UnsymmetricSolver::UnsymmetricSolver() : impl_(std::make_unique<Impl>()) {}
-UnsymmetricSolver::~UnsymmetricSolver() = default;
-UnsymmetricSolver::UnsymmetricSolver(UnsymmetricSolver&&) noexcept = default;
-UnsymmetricSolver& UnsymmetricSolver::operator=(UnsymmetricSolver&&) noexcept = default;
+DirectSolver::DirectSolver() : impl_(std::make_unique<Impl>()) {}
+DirectSolver::~DirectSolver() = default;
+DirectSolver::DirectSolver(DirectSolver&&) noexcept = default;
+DirectSolver& DirectSolver::operator=(DirectSolver&&) noexcept = default;
 
 namespace {
 
 void check(int status, const char* what) {
   if (status == UMFPACK_OK) return;
   if (status == UMFPACK_WARNING_singular_matrix)
-    throw Error::numerical(std::string("linear solver: the matrix is singular (") + what +
-                           "): are all bodies held, and no constraint twice?");
-  throw Error::numerical(std::string("linear solver: UMFPACK failed in ") + what + ", status " +
+    throw Error::numerical(
+        std::string("linear solver: the matrix is singular (") + what +
+        "); a body may be insufficiently fixed, or a constraint may be redundant");
+  throw Error::numerical(std::string("linear solver: UMFPACK failed in ") + what + " with status " +
                          std::to_string(status));
 }
 
 }  // namespace
 
-void UnsymmetricSolver::Impl::analyze(const SparseMatrix& a, const double* values) {
+void DirectSolver::Impl::analyze(const SparseMatrix& a, const double* values) {
   analysed = Eigen::Map<const VectorXd>(values, a.nonZeros());
   check(
       umfpack_di_symbolic(static_cast<int>(a.rows()), static_cast<int>(a.cols()), a.outerIndexPtr(),
@@ -65,7 +66,7 @@ void UnsymmetricSolver::Impl::analyze(const SparseMatrix& a, const double* value
       "analysis");
 }
 
-void UnsymmetricSolver::analyze(const SparseMatrix& a) {
+void DirectSolver::analyze(const SparseMatrix& a) {
   impl_->release_numeric();
   // UMFPACK analyses the pattern only when it is used.
   if (impl_->symbolic) umfpack_di_free_symbolic(&impl_->symbolic);
@@ -74,9 +75,9 @@ void UnsymmetricSolver::analyze(const SparseMatrix& a) {
   impl_->may_border = impl_->bordered.analyze(a);
 }
 
-void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
+void DirectSolver::factorize(const SparseMatrix& a, double miss) {
   if (!Eigen::Map<const VectorXd>(a.valuePtr(), a.nonZeros()).allFinite())
-    throw Error::numerical("linear solver: the matrix holds numbers that are not finite");
+    throw Error::numerical("linear solver: the matrix contains numbers that are not finite");
   impl_->miss = miss;
   impl_->turns.clear();
   impl_->release_numeric();
@@ -88,18 +89,17 @@ void UnsymmetricSolver::factorize(const SparseMatrix& a, double miss) {
         "factorization");
 }
 
-void UnsymmetricSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
-                              bool refine) const {
+void DirectSolver::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine) const {
   impl_->solve(a, b, x, refine, false);
 }
 
-void UnsymmetricSolver::solve_transposed(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
-                                         bool refine) const {
+void DirectSolver::solve_transposed(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
+                                    bool refine) const {
   impl_->solve(a, b, x, refine, true);
 }
 
-void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x,
-                                    bool refine, bool transposed) {
+void DirectSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, VectorXd& x, bool refine,
+                               bool transposed) {
   if (is_bordered) {
     bordered.solve(b, x, transposed);
     if (!refine || !turns.empty()) return;
@@ -119,19 +119,19 @@ void UnsymmetricSolver::Impl::solve(const SparseMatrix& a, const VectorXd& b, Ve
         "solution");
 }
 
-const std::vector<char>& UnsymmetricSolver::border() const {
-  static const std::vector<char> kNone;
+const std::vector<char>& DirectSolver::border() const {
+  static const std::vector<char> kEmptyBorder;
   const std::vector<char>& border = impl_->bordered.border();
-  return impl_->is_bordered && border.size() >= kFewestRenewed ? border : kNone;
+  return impl_->is_bordered && border.size() >= kMinRenewedUnknowns ? border : kEmptyBorder;
 }
 
-bool UnsymmetricSolver::renew_border(const SparseMatrix& a, std::vector<TurnedVectors> turns) {
+bool DirectSolver::renew_border(const SparseMatrix& a, std::vector<TurnedVectors> turns) {
   impl_->is_bordered = impl_->is_bordered && impl_->bordered.renew_border(a, turns);
   impl_->turns = std::move(turns);
   return impl_->is_bordered;
 }
 
-SparseMatrix UnsymmetricSolver::as_solved(const SparseMatrix& a) const {
+SparseMatrix DirectSolver::as_solved(const SparseMatrix& a) const {
   if (impl_->turns.empty()) return a;
   std::vector<Eigen::Triplet<double>> q;
   std::vector<char> turned(static_cast<size_t>(a.rows()), 0);
@@ -156,21 +156,21 @@ SparseMatrix UnsymmetricSolver::as_solved(const SparseMatrix& a) const {
   return SparseMatrix(turn * inner) * SparseMatrix(turn.transpose()) + among;
 }
 
-void UnsymmetricSolver::remember(Memory& memory, const SparseMatrix& a) {
+void DirectSolver::archive(Archive& memory, const SparseMatrix& a) {
   bool is_factored = impl_->is_bordered || impl_->numeric != nullptr;
   VectorXd values = impl_->analysed;
   double miss = impl_->miss;
   std::vector<TurnedVectors> turns = impl_->turns;
   memory(is_factored, values, miss, turns);
-  if (memory.puts_back()) analyze(a);
-  impl_->bordered.remember(memory);
-  if (!memory.puts_back()) return;
+  if (memory.is_restoring()) analyze(a);
+  impl_->bordered.archive(memory);
+  if (!memory.is_restoring()) return;
   if (values.size() > 0 && values.size() == a.nonZeros()) impl_->analyze(a, values.data());
   if (is_factored) factorize(a, miss);
   if (!turns.empty()) renew_border(a, std::move(turns));
 }
 
-bool UnsymmetricSolver::is_cholesky() const { return impl_->is_bordered; }
+bool DirectSolver::is_cholesky() const { return impl_->is_bordered; }
 
 std::string blas_kernel() {
   auto* name = reinterpret_cast<char* (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));

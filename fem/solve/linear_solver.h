@@ -7,7 +7,7 @@
 
 #include "fem/dofs.h"
 #include "fem/solve/turned_vectors.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 
 namespace flexmorph::fem {
 
@@ -20,14 +20,14 @@ namespace flexmorph::fem {
 /// that flows near a joint) are factored by BorderedCholesky, all others by UMFPACK, which costs
 /// three to five times as much. The pattern is analysed once; every factorization chooses the
 /// method again.
-class UnsymmetricSolver {
+class DirectSolver {
  public:
-  UnsymmetricSolver();
-  ~UnsymmetricSolver();
+  DirectSolver();
+  ~DirectSolver();
   /// Takes over the analysis and the factors of another solver.
-  UnsymmetricSolver(UnsymmetricSolver&&) noexcept;
+  DirectSolver(DirectSolver&&) noexcept;
   /// Replaces the analysis and the factors by those of another solver.
-  UnsymmetricSolver& operator=(UnsymmetricSolver&&) noexcept;
+  DirectSolver& operator=(DirectSolver&&) noexcept;
 
   /// Analyses the pattern of a compressed matrix; values may change afterwards.
   void analyze(const SparseMatrix& a);
@@ -61,7 +61,7 @@ class UnsymmetricSolver {
   /// Saves or restores the matrix values from which analysis and factors were made. On restoring,
   /// both are recomputed, identical bit for bit.
   /// @param a  the matrix of the last factorize(), or of analyze() if no factorize() followed
-  void remember(Memory& memory, const SparseMatrix& a);
+  void archive(Archive& memory, const SparseMatrix& a);
 
   /// Returns true if the last factorization was made by BorderedCholesky.
   bool is_cholesky() const;

@@ -67,8 +67,8 @@ SupernodalFactor Q4Matrix::pattern(std::optional<std::pair<int, int>> further) {
     return static_cast<int>(std::lower_bound(begin, end, r) - pattern.begin());
   };
   scatter_.reserve(36 * cells_.size());
-  for (const int place : cells_) {
-    const auto cell = rows_of_cell(place / grid_.ny, place % grid_.ny);
+  for (const int value_index : cells_) {
+    const auto cell = rows_of_cell(value_index / grid_.ny, value_index % grid_.ny);
     for (std::size_t a = 0; a < 8; ++a)
       for (std::size_t b = 0; b <= a; ++b) {
         const int c = std::min(cell[a], cell[b]), r = std::max(cell[a], cell[b]);

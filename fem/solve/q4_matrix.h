@@ -44,8 +44,8 @@ class Q4Matrix {
 
   /// Returns the index in the pattern of the entry of unknowns a >= b of a cell, given by its index
   /// in `cells`; -1 if one of them is held.
-  int entry(std::size_t place, std::size_t a, std::size_t b) const {
-    return scatter_[36 * place + a * (a + 1) / 2 + b];
+  int entry(std::size_t value_index, std::size_t a, std::size_t b) const {
+    return scatter_[36 * value_index + a * (a + 1) / 2 + b];
   }
   /// Returns the index in the pattern of the additional entry `further`; -1 without it.
   int further_entry() const { return further_entry_; }

@@ -19,7 +19,7 @@ void ScaledConstraints::evaluate(Workspace& model, const State& x) {
       throw Error::numerical(
           "joint '" +
           model.joints()[static_cast<size_t>(joint_of_row(model, entry.row()))]->name() +
-          "' gives numbers that are not finite at t = " + std::to_string(x.t) + " s");
+          "' has numbers that are not finite at t = " + std::to_string(x.t) + " s");
     scaled_.emplace_back(entry.row(), entry.col(), entry.value() / scales_[entry.col()]);
   }
   jacobian_.resize(m, n);
@@ -53,11 +53,12 @@ int joint_of_row(const Model& model, int row) {
 }
 
 std::string list_joints(const std::vector<std::string>& names) {
-  constexpr size_t kMost = 5;
+  constexpr size_t kMaxListed = 5;
   std::string out = names.size() == 1 ? "joint" : "joints";
-  for (size_t i = 0; i < std::min(names.size(), kMost); ++i)
+  for (size_t i = 0; i < std::min(names.size(), kMaxListed); ++i)
     out += (i == 0 ? " '" : ", '") + names[i] + "'";
-  if (names.size() > kMost) out += " and " + std::to_string(names.size() - kMost) + " more";
+  if (names.size() > kMaxListed)
+    out += " and " + std::to_string(names.size() - kMaxListed) + " more";
   return out;
 }
 

@@ -18,7 +18,7 @@ class Path {
     m_ = model.n_constraints();
     x_.v = x_.a = VectorXd::Zero(n_);
     if (x_.lambda.size() != m_) x_.lambda = VectorXd::Zero(m_);
-    size_ = extent();
+    size_ = resource_estimate();
     start_ = here();
     range_ = std::abs(settings.to - settings.from);
     direction_ = settings.to < settings.from ? -1 : 1;
@@ -27,7 +27,7 @@ class Path {
   StaticResult run() {
     check();
     factor_ = settings_.from;
-    if (!newton(factor_) && !bring_on()) fail("no equilibrium at the start");
+    if (!newton(factor_) && !bring_on()) fail("no equilibrium was found at the start");
     result_.factor = factor_;
     if (!accepted()) return result_;
     if (range_ == 0) {
@@ -82,12 +82,13 @@ class Path {
           s.max_iterations > 0 && s.max_steps > 0 && s.tolerance > 0) ||
         !std::isfinite(s.from) || !std::isfinite(s.to))
       throw Error::input(
-          "statics: steps, limits and tolerance are positive, largest_step not below first_step");
+          "statics: step sizes, limits and the tolerance must be positive, and largest_step must "
+          "not be below first_step");
   }
 
   /// Returns the largest half-width of the positions of a body over the coordinate directions [m];
   /// rigid bodies contribute their length.
-  double extent() const {
+  double resource_estimate() const {
     double out = 0;
     for (const Body& b : model_.bodies()) {
       if (b.element->is_rigid()) out = std::max(out, b.element->scale(1));
@@ -241,7 +242,7 @@ class Path {
         before = last;
         ++result_.rejected;
         step = std::min(step, left / range_) / 2;
-        if (step < settings_.smallest_step) fail("no convergence");
+        if (step < settings_.smallest_step) fail("Newton's method does not converge");
         continue;
       }
       before = last;
@@ -269,7 +270,8 @@ class Path {
           psi = std::sqrt(product(response, response));
           if (!(psi > 0))
             throw Error::input(
-                "statics: path 'arc_length' needs a load or a temperature that moves something");
+                "statics: path 'arc_length' needs a load or a temperature that causes "
+                "displacements");
           first_length = length = std::sqrt(2.0) * psi * settings_.first_step * range_;
         }
         const double rise = std::sqrt(product(response, response) + psi * psi);
@@ -285,7 +287,7 @@ class Path {
         ++result_.rejected;
         length /= 2;
         if (length < settings_.smallest_step * first_length / settings_.first_step)
-          fail("no convergence along the arc");
+          fail("Newton's method does not converge along the arc");
         continue;
       }
       if ((factor_ - settings_.to) * direction_ >= 0) {
@@ -343,7 +345,7 @@ class Path {
     x_.lambda = last.lambda + part * (beyond.lambda - last.lambda);
     if (!newton(settings_.to)) {
       go(last);
-      fail("no equilibrium at the end, though the path passed it");
+      fail("no equilibrium was found at the final load factor, although the path passed it");
     }
     result_.factor = factor_;
     ++result_.steps;
@@ -351,18 +353,19 @@ class Path {
   }
 
   void count_step() {
-    if (result_.steps + result_.rejected >= settings_.max_steps) fail("too many steps");
+    if (result_.steps + result_.rejected >= settings_.max_steps)
+      fail("the limit of " + std::to_string(settings_.max_steps) + " steps is reached");
   }
 
   [[noreturn]] void fail(const std::string& why) {
     model_.scale_loads(factor_);
     std::string residuals;
     for (const double r : history_) residuals += formatted(" %.2e", r);
-    const std::string where =
-        formatted(" after the load factor %.6g (%d steps, %d rejected, smallest area ratio %.3g)",
-                  factor_, result_.steps, result_.rejected, model_.smallest_area_ratio(x_));
-    throw Error::numerical("statics: " + why + where +
-                           "; residuals of the last attempt:" + residuals);
+    const std::string where = formatted(
+        " after the load factor %.6g (%d steps, %d rejected steps, smallest area ratio %.3g)",
+        factor_, result_.steps, result_.rejected, model_.smallest_area_ratio(x_));
+    throw Error::numerical("statics: " + why + where + "; the residuals of the last attempt are" +
+                           residuals);
   }
 
   Workspace& model_;
@@ -375,7 +378,7 @@ class Path {
   StaticResult result_;
   Constraints c_;
   SparseMatrix kkt_;
-  UnsymmetricSolver solver_;
+  DirectSolver solver_;
   VectorXd force_, right_;
   VectorXd held_;  // forces that do not act yet, during bring_on(); otherwise empty
   Point start_;

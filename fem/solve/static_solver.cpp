@@ -77,14 +77,14 @@ void StaticSolver::Impl::number(std::span<const int> nodes, std::span<const Held
   for (const HeldUnknown& h : held) {
     if (h.node < 0 || h.node >= grid.n_nodes() || h.component < 0 || h.component > 1)
       throw Error::input("static solver: node " + std::to_string(h.node) + ", component " +
-                         std::to_string(h.component) + " is not of this grid");
+                         std::to_string(h.component) + " does not exist on this grid");
     exists[2 * static_cast<std::size_t>(h.node) + static_cast<std::size_t>(h.component)] = 0;
   }
   int n = 0;
   for (const int node : nodes)
     for (std::size_t k = 2 * static_cast<std::size_t>(node), end = k + 2; k < end; ++k)
       if (exists[k]) rows[k] = n++;
-  if (n == 0) throw Error::input("static solver: every displacement is held");
+  if (n == 0) throw Error::input("static solver: all displacements are fixed");
   std::optional<std::pair<int, int>> ends;  // unknowns in x at both ends of the edge
   const auto x_of = [&](int j) {
     return rows[2 * static_cast<std::size_t>(grid.node(grid.nx, j))];
@@ -105,8 +105,9 @@ void StaticSolver::Impl::each_cell(Use use) const {
 /// the edge.
 void StaticSolver::Impl::add_edge(std::span<double> values) const {
   const auto value = [&](int j, std::size_t a, std::size_t b) -> double& {
-    const int place = grid.cell(grid.nx - 1, j) - grid.cell(first_root, 0);
-    return values[static_cast<std::size_t>(matrix->entry(static_cast<std::size_t>(place), a, b))];
+    const int value_index = grid.cell(grid.nx - 1, j) - grid.cell(first_root, 0);
+    return values[static_cast<std::size_t>(
+        matrix->entry(static_cast<std::size_t>(value_index), a, b))];
   };
   for (int j = 0; j < grid.ny; ++j)
     for (const std::size_t c : {2u, 3u}) {
@@ -129,7 +130,7 @@ bool StaticSolver::Impl::arrange(std::span<const int> root_columns, Eigen::Index
     return false;
   }
   if (static_cast<Eigen::Index>(root_columns.size()) != n_loads) {
-    throw Error::input("static solver: " + std::to_string(n_loads) + " loads, but " +
+    throw Error::input("static solver: " + std::to_string(n_loads) + " loads are given, but " +
                        std::to_string(root_columns.size()) + " root columns");
   }
   for (int c : root_columns) {
@@ -190,10 +191,10 @@ StaticSolver::StaticSolver(const Grid& grid, const PlaneSection& section, int fi
     : impl_(std::make_unique<Impl>(grid, section)) {
   if (first_root < 0 || first_root >= grid.nx) {
     throw Error::input("static solver: root column " + std::to_string(first_root) +
-                       " leaves nothing of " + std::to_string(grid.nx) + " columns of cells");
+                       " is not one of the " + std::to_string(grid.nx) + " columns of cells");
   }
   if (!std::isfinite(edge_stiffness) || edge_stiffness < 0)
-    throw Error::input("static solver: the stiffness of an edge is at least 0, not " +
+    throw Error::input("static solver: the stiffness of an edge must be at least 0, not " +
                        std::to_string(edge_stiffness));
   impl_->first_root = first_root;
   impl_->edge_stiffness = edge_stiffness;
@@ -243,8 +244,8 @@ void StaticSolver::factorize(const VectorXd& stiffness_factor) {
       "static solver: the stiffness is not positive definite at the " +
       std::string(unknown % 2 == 0 ? "x" : "y") + "-displacement of node column " +
       std::to_string(node / (m.grid.ny + 1)) + ", row " + std::to_string(node % (m.grid.ny + 1)) +
-      ": stiffness factors must be positive, the supports must hold the plate against shifts and "
-      "turning, and no part may float");
+      ": stiffness factors must be positive, the supports must prevent translation and rotation of "
+      "the plate, and every part must be connected to a support");
 }
 
 void StaticSolver::solve(MatrixXd& loads, std::span<const int> root_columns) const {

@@ -25,7 +25,7 @@ void find_equilibrium(Workspace& model, State& x, double size, const Accelerate&
   const VectorXd scales = model.scales();
   Constraints c;
   SparseMatrix kkt;
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   VectorXd residual, right(n + m), step;
   double correction = 0;
   for (int iteration = 0; iteration < 40; ++iteration) {
@@ -89,7 +89,8 @@ void add_column(const SparseMatrix& a, int from, double factor, int to, int n, S
     if (entry.value() == 0) continue;
     while (p < end && b.innerIndexPtr()[p] < entry.row()) ++p;
     if (p == end || b.innerIndexPtr()[p] != entry.row())
-      throw Error::numerical("statics: a force that couples one direction alone cannot be carried");
+      throw Error::numerical(
+          "statics: a force that acts on one direction only is not supported in a rotating body");
     b.valuePtr()[p] += factor * entry.value();
   }
 }
@@ -113,16 +114,17 @@ void solve_rotating_equilibrium(Workspace& model, const VectorXd& spin, const Ve
   };
   find_equilibrium(
       model, x, std::max(1e-300, (x.q - center).lpNorm<Eigen::Infinity>()), accelerate, soften,
-      "statics: no equilibrium in the rotating frame at the start, t = 0, after 40 "
-      "iterations: the bodies are too soft for their loads, or nothing holds a part of them");
+      "statics: no equilibrium in the rotating frame was found at the start, t = 0, after 40 "
+      "iterations: the bodies are too soft for their loads, or a part of them is not fixed");
 }
 
 void solve_carried_equilibrium(Workspace& model, State& x) {
   find_equilibrium(
       model, x, std::max(1e-300, x.q.lpNorm<Eigen::Infinity>()), [](State&) { return true; },
       [](const State&, const Constraints&, SparseMatrix&) {},
-      "statics: no equilibrium under the inertia forces of the start, t = 0, after 40 iterations: "
-      "the bodies are too soft for them, or nothing holds a part of them");
+      "statics: no equilibrium with the initial inertia forces was found at the start, t = 0, "
+      "after 40 iterations: the bodies are too soft for these forces, or a part of them is not "
+      "fixed");
 }
 
 void add_turning_tangent(Workspace& model, const State& x, const Constraints& c,
@@ -168,25 +170,26 @@ void solve_steady_equilibrium(Workspace& model, std::span<const Turning> turning
   };
   const double size = std::max(1e-300, x.q.lpNorm<Eigen::Infinity>());
   bring_on(x, [&](double part, State& s) {
-    VectorXd idle;
+    VectorXd unloaded;
     if (part < 1) {
       carry(s);
-      model.force(s, idle);
-      idle *= part - 1;
+      model.force(s, unloaded);
+      unloaded *= part - 1;
       s.lambda.setZero();
     }
-    find_equilibrium(
-        model, s, size, carry, turn,
-        "statics: no equilibrium under the inertia forces of the start, t = 0, after 40 "
-        "iterations: the bodies are too soft for them, or nothing holds a part of them",
-        0, idle);
+    find_equilibrium(model, s, size, carry, turn,
+                     "statics: no equilibrium with the initial inertia forces was found at the "
+                     "start, t = 0, after 40 iterations: the bodies are too soft for these forces, "
+                     "or a part of them is not fixed",
+                     0, unloaded);
   });
   carry(x);
 }
 
-void solve_resting_equilibrium(Workspace& model, State& x) {
+void solve_static_equilibrium(Workspace& model, State& x) {
   constexpr double kFirst = 1e4;  // κ [1/s²]
-  constexpr double kFar = 100;  // sizes of the model; a larger displacement has no restoring force
+  constexpr double kMaxDisplacement =
+      100;  // sizes of the model; a larger displacement has no restoring force
   x.v.setZero();
   const State start = x;
   const double size = std::max(1e-300, x.q.lpNorm<Eigen::Infinity>());
@@ -202,24 +205,27 @@ void solve_resting_equilibrium(Workspace& model, State& x) {
     const auto soften = [&](const State& at, const Constraints& c, SparseMatrix& kkt) {
       model.kkt(at, c, {1, 0, hold}, 1, kkt);
     };
-    VectorXd idle;
+    VectorXd unloaded;
     if (part < 1) {
       s.a.setZero(model.n_dofs());
-      model.force(s, idle);
-      idle *= part - 1;
+      model.force(s, unloaded);
+      unloaded *= part - 1;
       s.lambda.setZero();
     }
     // Along a degree of freedom that only the holding force restrains, forces are zero up to the
     // round-off of stiff ones.
     find_equilibrium(model, s, size, accelerate, soften,
-                     "statics: no equilibrium at rest after 40 iterations", 1e-7, idle);
+                     "statics: no equilibrium at rest was found after 40 iterations", 1e-7,
+                     unloaded);
     s.a.setZero();
     model.follow_turns(s);
   };
   if (bring_on(x, rest)) rest(1, x);  // without the holding forces of the last step
-  if (model.scales().cwiseProduct(x.q - start.q).lpNorm<Eigen::Infinity>() > kFar * size)
+  if (model.scales().cwiseProduct(x.q - start.q).lpNorm<Eigen::Infinity>() >
+      kMaxDisplacement * size)
     throw Error::numerical(
-        "statics: no equilibrium at rest: nothing brings a body back that its forces move");
+        "statics: there is no equilibrium at rest: a body is moved by its forces and has no "
+        "restoring force");
 }
 
 }  // namespace flexmorph::fem

@@ -56,8 +56,8 @@ void add_turning_tangent(Workspace& model, const State& x, const Constraints& c,
 /// Where only the weight restores the position of a body, the tangent is singular until λ is known.
 /// Therefore the model is held by a fading force -κ M (q - q₀): κ decreases from 10⁴ by a factor of
 /// ten per iteration to 0.01 s⁻² and then stays constant. The remaining error of a degree of
-/// freedom with angular frequency ω is 0.01/ω² of its displacement; a degree of freedom without a
-/// restoring force stays where it is.
+/// freedom with angular frequency ω is 0.01/ω² of its displacement; a degree of freedom
+/// without a restoring force stays where it is.
 ///
 /// Where the iteration does not converge, the forces at x are applied in steps, each started from
 /// the previous equilibrium. This serves a spring that is far from its free length, or wound up by
@@ -66,8 +66,8 @@ void add_turning_tangent(Workspace& model, const State& x, const Constraints& c,
 /// @param x  in: near the equilibrium; out: q and λ of the equilibrium, v = a = 0.
 /// @throws Error (numerical) when no equilibrium is found, or the unknowns move by more than 100
 ///     times the size of the model.
-void solve_resting_equilibrium(Workspace& model, State& x);
-/// Holding coefficient κ of the last iterations of solve_resting_equilibrium() [1/s²].
+void solve_static_equilibrium(Workspace& model, State& x);
+/// Holding coefficient κ of the last iterations of solve_static_equilibrium() [1/s²].
 inline constexpr double kLastHold = 1e-2;
 
 /// Returns the small displacements of a linear analysis (n_dofs): one Newton step from x under the

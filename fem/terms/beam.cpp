@@ -68,10 +68,11 @@ class Beam final : public ElasticTerm, public BatchTerm {
 
   /// Creates an unprepared term, because prepared data would be recomputed anyway.
   std::unique_ptr<Term> clone() const override { return std::make_unique<Beam>(section_, kind_); }
-  void prepare(const Element& element, const Factors& factors, bool all) override {
+  void prepare(const Element& element, const ScaleFactors& factors, bool all) override {
     if (element.dim() != kDim || element.n_shapes() != kShapes)
-      throw Error::input("term '" + name() +
-                         "' is that of a beam in the plane (r, r_x, r_y at each of two nodes)");
+      throw Error::input(
+          "term '" + name() +
+          "' is only available for a beam in the plane (r, r_x, r_y at each of two nodes)");
     prepare_parts(element, factors);
     if (!all) return;  // lines of a beam do not move
     const int n = element.n_elements();
@@ -105,19 +106,19 @@ class Beam final : public ElasticTerm, public BatchTerm {
     add_tangent_of(d.w.data(), s, p, p, w.q, ByRows{tangent.data()});
   }
 
-  void add_forces(const Batch& x, Lanes* force) const override {
+  void add_forces(const Batch& x, Pack* force) const override {
     run_batch_kernel([&]<class V>() {
       V p[kVectors * kDim], g[kPairs], s[kPairs];
-      evaluate(of<V>(x), lanes_as<V>(x.q), p, g, s);
-      add_force_of(s, p, lanes_as<V>(force));
+      evaluate(of<V>(x), packs_as<V>(x.q), p, g, s);
+      add_force_of(s, p, packs_as<V>(force));
     });
   }
 
-  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+  void add_tangents(const Batch& x, const Weights& w, Pack* tangent) const override {
     if (w.q == 0) return;
     run_batch_kernel([&]<class V>() {
-      V p[kVectors * kDim], g[kPairs], s[kPairs], *out = lanes_as<V>(tangent);
-      evaluate(of<V>(x), lanes_as<V>(x.q), p, g, s);
+      V p[kVectors * kDim], g[kPairs], s[kPairs], *out = packs_as<V>(tangent);
+      evaluate(of<V>(x), packs_as<V>(x.q), p, g, s);
       add_tangent_of(of<V>(x).w, s, p, p, w.q,
                      [&](int row, int column) -> V& { return out[column * kShapes * kDim + row]; });
     });
@@ -164,7 +165,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
     std::array<V, kPairs> reference{};           // g°
   };
   using Data = DataOf<double>;
-  using Batched = DataOf<Lanes>;
+  using Batched = DataOf<Pack>;
   /// View of DataOf as the kernels read it.
   template <class V>
   struct DataView {
@@ -174,7 +175,7 @@ class Beam final : public ElasticTerm, public BatchTerm {
   template <class V>
   DataView<V> of(const Batch& x) const {
     const Batched& d = batches_[static_cast<size_t>(x.first / kLanes)];
-    return {lanes_as<V>(d.w.data()), lanes_as<V>(d.reference.data())};
+    return {packs_as<V>(d.w.data()), packs_as<V>(d.reference.data())};
   }
 
   template <class V>
@@ -238,7 +239,8 @@ class Beam final : public ElasticTerm, public BatchTerm {
     return out;
   }
 
-  Data integrate(const Element& element, int e, const Factors& factors, const MatrixXd& reference) {
+  Data integrate(const Element& element, int e, const ScaleFactors& factors,
+                 const MatrixXd& reference) {
     const BeamStrainPoints points = beam_strain_points(element, e, factors, reference);
     const std::vector<Strains> lambda = strains(points);
     Eigen::Matrix<double, kPairs, kPairs> W;
@@ -281,8 +283,8 @@ TermRow row_of(std::string sentence) {
   return {.name = kind.name,
           .sentence = std::move(sentence),
           .role = "beam",
-          .places = {TermPlace::beam},
-          .required_in = {TermPlace::beam},
+          .domains = {TermDomain::beam},
+          .required_in = {TermDomain::beam},
           .keys = {},
           .columns = {},
           .elastic = [](const TermData& data) { return Beam::parts_of(data.section, kind); },
@@ -309,22 +311,22 @@ const TermRow& gcm_row() {
 
 const TermRow& ecm_row() {
   static const TermRow kRow = row_of<kEcm>(
-      "Elastic forces of a beam by enhanced continuum mechanics, with assumed strains on the axis: "
-      "locks neither in thick nor in slender beams.");
+      "Elastic forces of a beam by enhanced continuum mechanics, with assumed strains on the axis. "
+      "This term locks neither in thick nor in slender beams.");
   return kRow;
 }
 
 const TermRow& gcm_full_row() {
   static const TermRow kRow = row_of<kGcmFull>(
-      "As \"gcm\", strains as the displacements have them: locks in large bending of slender "
-      "beams.");
+      "Elastic forces of a beam by general continuum mechanics, without assumed strains. This term "
+      "locks in large bending of slender beams.");
   return kRow;
 }
 
 const TermRow& ecm_full_row() {
   static const TermRow kRow = row_of<kEcmFull>(
-      "As \"ecm\", strains as the displacements have them: locks in large bending of slender "
-      "beams.");
+      "Elastic forces of a beam by enhanced continuum mechanics, without assumed strains. This "
+      "term locks in large bending of slender beams.");
   return kRow;
 }
 

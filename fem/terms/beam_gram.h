@@ -19,8 +19,8 @@ inline constexpr int kPairs = kVectors * (kVectors + 1) / 2;
 /// Returns the number of the pair i, j in the order 00, 10, 11, 20, ...
 constexpr int pair(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 
-/// Index of W for the pairs x and (l, j) in its packed lower triangle: kPlace[x][l][j].
-inline constexpr auto kPlace = [] {
+/// Index of W for the pairs x and (l, j) in its packed lower triangle: kIndex[x][l][j].
+inline constexpr auto kIndex = [] {
   std::array<std::array<std::array<int, kVectors>, kVectors>, kPairs> out{};
   for (int x = 0; x < kPairs; ++x)
     for (int l = 0; l < kVectors; ++l)
@@ -101,7 +101,7 @@ void add_tangent_of(const V* w, const V* s, const V* left, const V* right, doubl
       V sum[kDim] = {};
 #pragma GCC unroll 5
       for (size_t j = 0; j < kVectors; ++j) {
-        const V value = w[kPlace[x][l][j]];
+        const V value = w[kIndex[x][l][j]];
         for (size_t c = 0; c < kDim; ++c) sum[c] += value * right[j * kDim + c];
       }
       for (size_t c = 0; c < kDim; ++c) rows[x][l * kDim + c] = sum[c];

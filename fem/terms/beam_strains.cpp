@@ -94,7 +94,7 @@ std::vector<Eigen::Index> sections_of(const ShapeTable& t) {
 
 }  // namespace
 
-BeamStrainPoints beam_strain_points(const Element& element, int e, const Factors& factors,
+BeamStrainPoints beam_strain_points(const Element& element, int e, const ScaleFactors& factors,
                                     const MatrixXd& reference) {
   const auto numbers = element.vectors(e);
   Vectors X;
@@ -108,7 +108,7 @@ BeamStrainPoints beam_strain_points(const Element& element, int e, const Factors
   const Uniform uniform(at_samples);
 
   ShapeTable t, axis;
-  element.tabulate(e, 8, Tabulate::gradient, factors, FactorKind::stiffness, t);
+  element.tabulate(e, 8, Tabulate::gradient, factors, ScaleFactorKind::stiffness, t);
   BeamStrainPoints out;
   out.weight = t.weight;
   out.section = sections_of(t);

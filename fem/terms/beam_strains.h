@@ -64,7 +64,7 @@ struct BeamStrainPoints {
 /// @param element  with vectors r, r_x, r_y at each of two nodes
 /// @param reference  Element::reference()
 /// @throws Error (input) for scale factors that are not uniform.
-BeamStrainPoints beam_strain_points(const Element& element, int e, const Factors& factors,
+BeamStrainPoints beam_strain_points(const Element& element, int e, const ScaleFactors& factors,
                                     const MatrixXd& reference);
 
 }  // namespace flexmorph::fem

@@ -74,8 +74,8 @@ class Bending final : public ElasticTerm, public BatchTerm {
 
   /// Creates an unprepared term, because prepared data would be recomputed anyway.
   std::unique_ptr<Term> clone() const override { return make_bending(section_, degree_ / 2 + 1); }
-  void prepare(const Element& element, const Factors& factors, bool all) override {
-    if (element.dim() != 3) throw Error::input("term 'bending' needs a body in space");
+  void prepare(const Element& element, const ScaleFactors& factors, bool all) override {
+    if (element.dim() != 3) throw Error::input("term 'bending' needs a three-dimensional body");
     prepare_parts(element, factors);
     tables_.resize(static_cast<size_t>(element.n_elements()));
     int tabulated = -1;  // element of the last table
@@ -94,7 +94,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
 
   void add_force(int e, const Local& x, LocalRows& force) const override {
     dispatch([&]<bool kMixed>() {
-      bending::add_force<kMixed>(view(*tables_[static_cast<size_t>(e)]), places_, stiffness_,
+      bending::add_force<kMixed>(view(*tables_[static_cast<size_t>(e)]), value_indices_, stiffness_,
                                  x.q.data(), force.data());
     });
   }
@@ -102,26 +102,26 @@ class Bending final : public ElasticTerm, public BatchTerm {
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     if (w.q == 0) return;
     dispatch([&]<bool kMixed>() {
-      bending::add_tangent<kMixed>(view(*tables_[static_cast<size_t>(e)]), places_,
+      bending::add_tangent<kMixed>(view(*tables_[static_cast<size_t>(e)]), value_indices_,
                                    w.q * stiffness_, x.q.data(), work<double>(), tangent.data());
     });
   }
 
-  void add_forces(const Batch& x, Lanes* force) const override {
+  void add_forces(const Batch& x, Pack* force) const override {
     run_batch_kernel([&]<class V>() {
       of_batch<V>(x, [&]<bool kMixed>(const auto& table) {
-        bending::add_force<kMixed>(table, places_, stiffness_, lanes_as<V>(x.q),
-                                   lanes_as<V>(force));
+        bending::add_force<kMixed>(table, value_indices_, stiffness_, packs_as<V>(x.q),
+                                   packs_as<V>(force));
       });
     });
   }
 
-  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+  void add_tangents(const Batch& x, const Weights& w, Pack* tangent) const override {
     if (w.q == 0) return;
     run_batch_kernel([&]<class V>() {
       of_batch<V>(x, [&]<bool kMixed>(const auto& table) {
-        bending::add_tangent<kMixed>(table, places_, w.q * stiffness_, lanes_as<V>(x.q), work<V>(),
-                                     lanes_as<V>(tangent));
+        bending::add_tangent<kMixed>(table, value_indices_, w.q * stiffness_, packs_as<V>(x.q),
+                                     work<V>(), packs_as<V>(tangent));
       });
     });
   }
@@ -132,8 +132,8 @@ class Bending final : public ElasticTerm, public BatchTerm {
   double energy_at(int e, const Local& x) const override {
     double out = 0;
     dispatch([&]<bool kMixed>() {
-      out = bending::energy<kMixed>(view(*tables_[static_cast<size_t>(e)]), places_, stiffness_,
-                                    x.q.data());
+      out = bending::energy<kMixed>(view(*tables_[static_cast<size_t>(e)]), value_indices_,
+                                    stiffness_, x.q.data());
     });
     return out;
   }
@@ -141,7 +141,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
   /// Tables of eight elements: one for all, or a separate one for each, side by side.
   struct BatchTables {
     std::shared_ptr<const Table> shared;
-    bending::Table<Lanes> different;
+    bending::Table<Pack> different;
   };
 
   /// Calls f<has mixed derivatives>().
@@ -153,14 +153,14 @@ class Bending final : public ElasticTerm, public BatchTerm {
   template <class V, class F>
   void of_batch(const Batch& x, const F& f) const {
     const BatchTables& batch = batches_[static_cast<size_t>(x.first / kLanes)];
-    const bending::Table<Lanes>& own = batch.different;
+    const bending::Table<Pack>& own = batch.different;
     dispatch([&]<bool kMixed>() {
       if (batch.shared)
         f.template operator()<kMixed>(view(*batch.shared));
       else
-        f.template operator()<kMixed>(bending::TableView<V>{own.n, lanes_as<V>(own.m.data()),
-                                                            lanes_as<V>(own.across.data()),
-                                                            lanes_as<V>(own.weight.data())});
+        f.template operator()<kMixed>(bending::TableView<V>{own.n, packs_as<V>(own.m.data()),
+                                                            packs_as<V>(own.across.data()),
+                                                            packs_as<V>(own.weight.data())});
     });
   }
 
@@ -171,13 +171,13 @@ class Bending final : public ElasticTerm, public BatchTerm {
     return room;
   }
 
-  std::shared_ptr<Table> tabulate(const Element& element, int e, const Factors& factors) {
+  std::shared_ptr<Table> tabulate(const Element& element, int e, const ScaleFactors& factors) {
     products_.curvature = true;
-    if (!element.tabulate_products(e, degree_, factors, FactorKind::stiffness, products_) ||
+    if (!element.tabulate_products(e, degree_, factors, ScaleFactorKind::stiffness, products_) ||
         products_.dd_m.size() == 0 || !number())
       throw Error::input(
           "term 'bending' needs shape functions that are products of cubic functions along m and "
-          "n, and their curvature");
+          "n, and their second derivatives");
     const auto line = [](const MatrixXd& f, const MatrixXd& d, const MatrixXd& dd) {
       std::vector<double> out;
       for (Eigen::Index g = 0; g < f.rows(); ++g)
@@ -198,13 +198,13 @@ class Bending final : public ElasticTerm, public BatchTerm {
   /// Finds the unknown that belongs to each product; false where the shape functions are not those
   /// of h12 or h16.
   bool number() {
-    places_.fill(-1);
+    value_indices_.fill(-1);
     const size_t n_shapes = products_.function_m.size();
-    mixed_ = n_shapes == places_.size();
+    mixed_ = n_shapes == value_indices_.size();
     for (size_t k = 0; k < n_shapes; ++k) {
       const int i = products_.function_m[k], j = products_.function_n[k];
       if (!mixed_ && i % 2 == 1 && j % 2 == 1) return false;
-      places_[static_cast<size_t>(bending::kFunctions * j + i)] = static_cast<int>(k);
+      value_indices_[static_cast<size_t>(bending::kFunctions * j + i)] = static_cast<int>(k);
     }
     return products_.weight.rows() <= bending::kMaxLine && (mixed_ || n_shapes == 12);
   }
@@ -231,7 +231,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
     out.shared = alike ? *begin : nullptr;
     if (alike) return;
     out.different.n = (*begin)->n;
-    const auto spread = [&](std::vector<double> Table::*from, std::vector<Lanes>& to) {
+    const auto spread = [&](std::vector<double> Table::*from, std::vector<Pack>& to) {
       to.resize(((**begin).*from).size());
       for (int lane = 0; lane < kLanes; ++lane) {
         const Table& t = *begin[std::min(lane, last - first - 1)];
@@ -246,7 +246,7 @@ class Bending final : public ElasticTerm, public BatchTerm {
   PlaneSection section_;
   Mat3 stiffness_;  // D [N m]
   int degree_;
-  bending::Places places_{};
+  bending::EntryIndices value_indices_{};
   bool mixed_ = false;
   std::vector<std::shared_ptr<const Table>> tables_;
   std::vector<BatchTables> batches_;
@@ -265,10 +265,10 @@ const TermRow& bending_row() {
   };
   static const TermRow kRow{
       .name = "bending",
-      .sentence = "Bending of a thin plate.",
+      .sentence = "Elastic forces from the bending of a thin plate.",
       .role = "bending",
-      .places = {TermPlace::space},
-      .required_in = {TermPlace::space},
+      .domains = {TermDomain::space},
+      .required_in = {TermDomain::space},
       .keys = {{.name = "bending_points",
                 .noun = "a number of Gauss points in each direction",
                 .unit = "-",
@@ -276,7 +276,8 @@ const TermRow& bending_row() {
                 .high = 16,
                 .whole = true,
                 .fallback = 9,
-                .sentence = "Gauss points of the bending per element and direction."}},
+                .sentence =
+                    "Number of Gauss points per element and direction for the term `bending`."}},
       .columns = {},
       .elastic = [](const TermData& data) { return Bending::parts_of(data.section, points(data)); },
       .make = [](const TermData& data) { return make_bending(data.section, points(data)); }};

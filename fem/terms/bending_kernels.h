@@ -6,7 +6,7 @@
 #include "fem/terms/bending_point.h"
 
 /// Integrals of the bending energy over an element and their derivatives with respect to its
-/// unknowns, for one element (V = double) or eight side by side (V = LanesOf<...>).
+/// unknowns, for one element (V = double) or eight side by side (V = PackOf<...>).
 ///
 /// Shape functions are products of functions f_i(m) f_j(n), i, j = 0 ... 3, and the points form a
 /// tensor grid (g, h). Therefore every sum over functions and every sum over points is computed in
@@ -35,7 +35,7 @@ inline constexpr std::array<int, kVectors> kOrderM = {1, 0, 2, 0, 1}, kOrderN = 
 
 /// Unknown that belongs to the product of functions i and j: entry 4 j + i; -1: none. Without mixed
 /// derivatives (h12) the products of two derivative functions, i and j odd, have none.
-using Places = std::array<int, kFunctions * kFunctions>;
+using EntryIndices = std::array<int, kFunctions * kFunctions>;
 
 /// View of a table as the kernels read it.
 template <class T>
@@ -59,10 +59,11 @@ constexpr int step(int j) {
 
 /// Sorts the unknowns (n_shapes 3) by products of functions: entry 3 (4 j + i) + c.
 template <class V>
-inline void by_functions(const Places& places, const V* q, V* x) {
-  for (std::size_t k = 0; k < places.size(); ++k)
+inline void by_functions(const EntryIndices& value_indices, const V* q, V* x) {
+  for (std::size_t k = 0; k < value_indices.size(); ++k)
     for (std::size_t c = 0; c < 3; ++c)
-      x[3 * k + c] = places[k] < 0 ? V{} : q[3 * static_cast<std::size_t>(places[k]) + c];
+      x[3 * k + c] =
+          value_indices[k] < 0 ? V{} : q[3 * static_cast<std::size_t>(value_indices[k]) + c];
 }
 
 /// Computes the derivatives along m at one point of the direction m for every function along n:
@@ -101,10 +102,10 @@ inline void vectors_at(const T* f, const V* z, Vec<V>* y) {
 
 /// Calls f(h, Point) for all points, one row g after the other, and end(g) after each row.
 template <bool kMixed, class V, class T, class F, class End>
-inline void for_points(const TableView<T>& t, const Places& places,
+inline void for_points(const TableView<T>& t, const EntryIndices& value_indices,
                        const Eigen::Matrix3d& stiffness, const V* q, const F& f, const End& end) {
   V x[3 * kFunctions * kFunctions], z[3 * kLine];
-  by_functions(places, q, x);
+  by_functions(value_indices, q, x);
   for (int g = 0; g < t.n; ++g) {
     along_m<kMixed>(t.m + kLine * g, x, z);
     for (int h = 0; h < t.n; ++h) {
@@ -118,19 +119,19 @@ inline void for_points(const TableView<T>& t, const Places& places,
 
 /// Returns the bending energy of the element.
 template <bool kMixed, class V, class T>
-inline V energy(const TableView<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
-                const V* q) {
+inline V energy(const TableView<T>& t, const EntryIndices& value_indices,
+                const Eigen::Matrix3d& stiffness, const V* q) {
   V out{};
   for_points<kMixed>(
-      t, places, stiffness, q, [&](int, const Point<V>& point) { out += point.energy(); },
+      t, value_indices, stiffness, q, [&](int, const Point<V>& point) { out += point.energy(); },
       [](int) {});
   return out;
 }
 
 /// Adds ∂U/∂q (n_shapes 3).
 template <bool kMixed, class V, class T>
-inline void add_force(const TableView<T>& t, const Places& places, const Eigen::Matrix3d& stiffness,
-                      const V* q, V* force) {
+inline void add_force(const TableView<T>& t, const EntryIndices& value_indices,
+                      const Eigen::Matrix3d& stiffness, const V* q, V* force) {
   V sum[3 * kFunctions * kFunctions] = {};
   Vec<V> row[kMaxLine][kVectors];
   const auto end = [&](int g) {
@@ -156,10 +157,12 @@ inline void add_force(const TableView<T>& t, const Places& places, const Eigen::
     }
   };
   for_points<kMixed>(
-      t, places, stiffness, q, [&](int h, const Point<V>& point) { point.force(row[h]); }, end);
-  for (std::size_t k = 0; k < places.size(); ++k)
+      t, value_indices, stiffness, q, [&](int h, const Point<V>& point) { point.force(row[h]); },
+      end);
+  for (std::size_t k = 0; k < value_indices.size(); ++k)
     for (std::size_t c = 0; c < 3; ++c)
-      if (places[k] >= 0) force[3 * static_cast<std::size_t>(places[k]) + c] += sum[3 * k + c];
+      if (value_indices[k] >= 0)
+        force[3 * static_cast<std::size_t>(value_indices[k]) + c] += sum[3 * k + c];
 }
 
 /// Work space of add_tangent().
@@ -240,7 +243,7 @@ inline void sum_along(const TableView<T>& t, const V* blocks, V* out) {
 
 /// Adds scale ∂²U/∂q² (n_local x n_local, symmetric).
 template <bool kMixed, class V, class T>
-inline void add_tangent(const TableView<T>& t, const Places& places,
+inline void add_tangent(const TableView<T>& t, const EntryIndices& value_indices,
                         const Eigen::Matrix3d& stiffness, const V* q, TangentWork<V>& work,
                         V* tangent) {
   constexpr std::size_t kPairs = kFunctions * kFunctions;
@@ -251,7 +254,7 @@ inline void add_tangent(const TableView<T>& t, const Places& places,
   // Pairs of coordinate directions with row <= column; the other pairs follow by symmetry.
   constexpr std::array<std::size_t, 6> kRow = {0, 0, 0, 1, 1, 2}, kColumn = {0, 1, 2, 1, 2, 2};
   for_points<kMixed>(
-      t, places, stiffness, q,
+      t, value_indices, stiffness, q,
       [&](int h, const Point<V>& point) { point.tangent(work.row[static_cast<std::size_t>(h)]); },
       [&](int g) {
         for (std::size_t p = 0; p < 6; ++p)
@@ -277,8 +280,8 @@ inline void add_tangent(const TableView<T>& t, const Places& places,
         for (int i = 0; i < kFunctions; i += rows)
           for (int k = 0; k < kFunctions; k += columns) {
             const auto of = [&](int m, int n) {
-              return 3 *
-                     static_cast<std::size_t>(places[static_cast<std::size_t>(kFunctions * n + m)]);
+              return 3 * static_cast<std::size_t>(
+                             value_indices[static_cast<std::size_t>(kFunctions * n + m)]);
             };
             const std::size_t row = of(i, j) + kRow[p], column = of(k, l) + kColumn[p];
             const V& value = sum[kFunctions * i + k];

@@ -6,7 +6,7 @@
 #include "fem/shapes/batch.h"
 
 /// Bending energy of a thin plate at one point of one element (V = double) or of eight elements
-/// side by side (V = LanesOf<...>).
+/// side by side (V = PackOf<...>).
 namespace flexmorph::fem::bending {
 
 /// A vector in space.
@@ -39,7 +39,7 @@ inline Vec<V> scaled(const V& s, const Vec<V>& a) {
 inline double root(double x) { return std::sqrt(x); }
 /// Returns the square roots of a pack of SIMD lanes.
 template <int kWidth>
-inline LanesOf<kWidth> root(LanesOf<kWidth> x) {
+inline PackOf<kWidth> root(PackOf<kWidth> x) {
   for (int k = 0; k < kLanes; ++k) x[k] = std::sqrt(x[k]);
   return x;
 }
@@ -116,7 +116,7 @@ class Point {
         D_by_m[i][c] = D_[i][0] * by_m[0][c] + D_[i][1] * by_m[1][c] + D_[i][2] * by_m[2][c];
         D_by_n[i][c] = D_[i][0] * by_n[0][c] + D_[i][1] * by_n[1][c] + D_[i][2] * by_n[2][c];
       }
-    of_slopes(by_m, by_n, D_by_m, D_by_n, out);
+    of_derivatives(by_m, by_n, D_by_m, D_by_n, out);
     of_curvatures(D_by_m, D_by_n, out);
   }
 
@@ -131,8 +131,8 @@ class Point {
   }
 
   /// Computes the blocks of r_m and r_n: δκᵀ D Δκ + δnᵀ Q Δn + p · δ²n.
-  void of_slopes(const Vec<V>* by_m, const Vec<V>* by_n, const Vec<V>* D_by_m, const Vec<V>* D_by_n,
-                 Hessian<V>& out) const {
+  void of_derivatives(const Vec<V>* by_m, const Vec<V>* by_n, const Vec<V>* D_by_m,
+                      const Vec<V>* D_by_n, Hessian<V>& out) const {
     Vec<V> Q[3], m_Q[3], n_Q[3];  // Q, and [r_n] Q and [r_m] Q, by rows
     const V l5 = square_inverse_ * cube_inverse_, along = dot(A_, n_),
             normal = 15.0 * square_inverse_ * along;

@@ -43,11 +43,12 @@ std::vector<DissipativePart> parts_of(const TermData& data, double time) {
       const auto* linear = dynamic_cast<const LinearDensity*>(part.density.get());
       if (!linear)
         throw Error::input("term 'damping' needs a constant stiffness, and '" + row->name +
-                           "' has none");
+                           "' does not have a constant stiffness");
       out.push_back({std::make_shared<KelvinVoigt>(*linear, time), part.sampling});
     }
   }
-  if (out.empty()) throw Error::input("term 'damping' acts on elastic terms, and there is none");
+  if (out.empty())
+    throw Error::input("term 'damping' acts on elastic terms, but the body has no elastic term");
   return out;
 }
 
@@ -56,18 +57,21 @@ std::vector<DissipativePart> parts_of(const TermData& data, double time) {
 const TermRow& damping_row() {
   static const TermRow kRow{
       .name = "damping",
-      .sentence = "Material damping of Kelvin and Voigt: stresses by the rates of all strains.",
+      .sentence =
+          "Material damping of Kelvin and Voigt: the stresses are proportional to the rates of all "
+          "strains.",
       .role = "damping",
-      .places = {TermPlace::plane, TermPlace::space, TermPlace::beam},
+      .domains = {TermDomain::plane, TermDomain::space, TermDomain::beam},
       .required_in = {},
       .acts_on_elastic = true,
-      .free_lines = false,
+      .eulerian_lines = false,
       .keys = {{.name = "damping_time",
                 .noun = "a damping time",
                 .unit = "s",
                 .low_open = true,
                 .fallback = {},
-                .sentence = "Modes of pulsation ω are damped by the ratio ω/2 times this time."}},
+                .sentence =
+                    "Modes of angular frequency ω have the damping ratio ω/2 times this time."}},
       .columns = {"energy.dissipated"},
       .make = [](const TermData& data) -> std::unique_ptr<Term> {
         const double time = number_of(damping_row(), "damping_time", data);

@@ -1,12 +1,12 @@
 #include "fem/load_term.h"
 #include "fem/loads.h"
-#include "fem/terms/free_work.h"
+#include "fem/terms/eulerian_work.h"
 
 namespace flexmorph::fem {
 namespace {
 
 /// Loads of fixed direction; their generalized force does not depend on the shape of the body.
-class DeadLoad : public LoadTerm, public LinearMeanForce<DeadLoad>, public FreeLineTerm {
+class DeadLoad : public LoadTerm, public LinearMeanForce<DeadLoad>, public EulerianLineTerm {
  public:
   explicit DeadLoad(const LoadLaw& load) : LoadTerm(load) {}
 
@@ -15,12 +15,12 @@ class DeadLoad : public LoadTerm, public LinearMeanForce<DeadLoad>, public FreeL
     if (share.size() > 0) force.noalias() -= factor() * share * load().transpose();
   }
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
-  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+  void add_eulerian_force(int e, const Local& x, EulerianForce& force) const override {
     LocalRows rows = LocalRows::Zero(x.q.rows(), x.q.cols());
     add_force(e, x, rows);
     force.head(rows.size()) += Eigen::Map<const VectorXd>(rows.data(), rows.size());
   }
-  void add_free_tangent(int, const Local&, const Weights&, FreeTangent&) const override {}
+  void add_eulerian_tangent(int, const Local&, const Weights&, EulerianTangent&) const override {}
 
   std::string name() const override { return "dead load"; }
   Energies energies(int e, const Local& x) const override {
@@ -33,8 +33,8 @@ class DeadLoad : public LoadTerm, public LinearMeanForce<DeadLoad>, public FreeL
   void check(const Element& element, const std::string& what) const {
     if (load().size() != element.dim())
       throw Error::input(what + ": " + std::to_string(load().size()) +
-                         " components, and the body lives in " + std::to_string(element.dim()) +
-                         " dimensions");
+                         " components are given, but the body has " +
+                         std::to_string(element.dim()) + " dimensions");
   }
   /// Adds weight · N at a material point.
   void add_point(const Element& element, const Vec2& material, double weight) {
@@ -43,7 +43,7 @@ class DeadLoad : public LoadTerm, public LinearMeanForce<DeadLoad>, public FreeL
     if (!element.free_sides(e).empty())
       check_fixed(element, e, material);
     else if (table_.N_t.size() > 0)
-      throw Error::input("load: in an element whose material lines move");
+      throw Error::input("a load cannot act on an element whose material lines move");
     VectorXd& share = share_[static_cast<size_t>(e)];
     if (share.size() == 0) share.setZero(element.n_shapes());
     share += weight * table_.N.row(0).transpose();
@@ -57,7 +57,7 @@ class PointForce final : public DeadLoad {
  public:
   PointForce(const Vec2& material, const LoadLaw& force) : DeadLoad(force), material_(material) {}
   std::unique_ptr<Term> clone() const override { return std::make_unique<PointForce>(*this); }
-  void prepare(const Element& element, const Factors&, bool all) override {
+  void prepare(const Element& element, const ScaleFactors&, bool all) override {
     if (!all) return;  // only elements whose lines do not move are loaded
     check(element, "point force");
     share_.assign(static_cast<size_t>(element.n_elements()), {});
@@ -72,15 +72,15 @@ class EdgeLoad final : public DeadLoad {
  public:
   EdgeLoad(std::string edge, const LoadLaw& load) : DeadLoad(load), edge_(std::move(edge)) {}
   std::unique_ptr<Term> clone() const override { return std::make_unique<EdgeLoad>(*this); }
-  void prepare(const Element& element, const Factors&, bool all) override {
+  void prepare(const Element& element, const ScaleFactors&, bool all) override {
     if (!all) return;  // only elements whose lines do not move are loaded
     check(element, "load of edge '" + edge_ + "'");
     share_.assign(static_cast<size_t>(element.n_elements()), {});
     const std::vector<NodeVectors> nodes = element.edge(edge_);
     if (nodes.size() == 1)
       throw Error::input("load of edge '" + edge_ +
-                         "': the end of a beam is one node; a point force loads it, and a surface "
-                         "load [N/m²] all of the beam");
+                         "': the end of a beam is one node; use a point force for it, or a surface "
+                         "load [N/m²] for the whole beam");
     const GaussRule& rule = gauss(2);  // exact for the cubic N
     for (size_t i = 0; i + 1 < nodes.size(); ++i) {
       const Vec2 from = nodes[i].material, along = nodes[i + 1].material - from;
@@ -97,15 +97,15 @@ class SurfaceLoad final : public DeadLoad, public FlowTerm {
  public:
   using DeadLoad::DeadLoad;
   std::unique_ptr<Term> clone() const override { return std::make_unique<SurfaceLoad>(*this); }
-  void prepare(const Element& element, const Factors&, bool all) override {
+  void prepare(const Element& element, const ScaleFactors&, bool all) override {
     check(element, "surface load");
     if (element.n_scalars() > 0)
-      throw Error::input("surface load: on a body with free material lines");
+      throw Error::input("a surface load cannot act on a body with free material lines");
     share_.resize(static_cast<size_t>(element.n_elements()));
     rate_.resize(share_.size());
     for (int e = 0; e < element.n_elements(); ++e) {
       if (!all && !element.moving(e)) continue;
-      element.tabulate(e, 3, Tabulate::position_rates, {}, FactorKind::none, table_);
+      element.tabulate(e, 3, Tabulate::position_rates, {}, ScaleFactorKind::none, table_);
       share_[static_cast<size_t>(e)] = table_.N.transpose() * table_.weight;
       rate_[static_cast<size_t>(e)] =
           table_.N_t.size() > 0 ? VectorXd(table_.N_t.transpose() * table_.weight) : VectorXd();

@@ -8,7 +8,7 @@ const MatrixXd& table_of(const ShapeTable& t, const Measure& m) {
   if (m.m_order == 2 && m.n_order == 0) return t.N_mm;
   if (m.m_order == 0 && m.n_order == 2) return t.N_nn;
   if (m.m_order == 1 && m.n_order == 1) return t.N_mn;
-  throw Error::numerical("density: no table of this measure");
+  throw Error::numerical("density: this measure is not tabulated");
 }
 
 double MembraneDensity::energy(const Measures& z, Measures* gradient,

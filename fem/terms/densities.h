@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fem/section.h"
-#include "fem/terms/free_work.h"
+#include "fem/terms/eulerian_work.h"
 
 namespace flexmorph::fem {
 

@@ -20,7 +20,7 @@ double power_of_flow(StrainField& at, const MatrixXd& stress, const LocalRows& q
 
 }  // namespace
 
-void ElasticTerm::prepare_parts(const Element& element, const Factors& factors) {
+void ElasticTerm::prepare_parts(const Element& element, const ScaleFactors& factors) {
   element_ = &element;
   factors_ = &factors;
   gradient_.prepare(element);
@@ -30,21 +30,21 @@ void ElasticTerm::prepare_parts(const Element& element, const Factors& factors) 
   for (size_t i = 0; i < parts_.size(); ++i) {
     const StrainSampling& sampling = *parts_[i].sampling;
     if (!sampling.is_pointwise())
-      throw Error::input("term '" + name_ + "' does not know free material lines");
+      throw Error::input("term '" + name_ + "' does not support free material lines");
     free_[i].prepare(element, sampling.degree(), sampling.what(), factors);
   }
 }
 
-void ElasticTerm::add_free_force(int e, const Local& x, FreeForce& force) const {
+void ElasticTerm::add_eulerian_force(int e, const Local& x, EulerianForce& force) const {
   for (size_t i = 0; i < free_.size(); ++i)
-    FreeElastic(*parts_[i].density, free_[i].of(e)).add_force(x.q, force);
+    EulerianElastic(*parts_[i].density, free_[i].of(e)).add_force(x.q, force);
 }
 
-void ElasticTerm::add_free_tangent(int e, const Local& x, const Weights& w,
-                                   FreeTangent& tangent) const {
+void ElasticTerm::add_eulerian_tangent(int e, const Local& x, const Weights& w,
+                                       EulerianTangent& tangent) const {
   if (w.q == 0) return;
   for (size_t i = 0; i < free_.size(); ++i)
-    FreeElastic(*parts_[i].density, free_[i].of(e)).add_tangent(x.q, w.q, tangent);
+    EulerianElastic(*parts_[i].density, free_[i].of(e)).add_tangent(x.q, w.q, tangent);
 }
 
 void ElasticTerm::add_mean_force(int e, const LocalStep& x, LocalRows& force) const {
@@ -63,7 +63,7 @@ Energies ElasticTerm::energies(int e, const Local& x) const {
     return out;
   }
   for (size_t i = 0; i < free_.size(); ++i)
-    out.strain += FreeElastic(*parts_[i].density, free_[i].of(e)).energy(x.q);
+    out.strain += EulerianElastic(*parts_[i].density, free_[i].of(e)).energy(x.q);
   return out;
 }
 
@@ -76,7 +76,7 @@ double ElasticTerm::flow_power(int e, const Local& x) const {
       const bool bends = part.sampling->what() == Tabulate::curvature;
       element_->tabulate(e, part.sampling->degree(),
                          bends ? Tabulate::curvature_rates : Tabulate::gradient_rates, *factors_,
-                         FactorKind::stiffness, t);
+                         ScaleFactorKind::stiffness, t);
       out += fem::flow_power(*part.density, t, x.q);
       continue;
     }
@@ -101,7 +101,8 @@ StrainTable& strains_at_points(const StrainSampling& sampling, const StrainMeasu
                                const StrainSource& from, int e, const LocalRows& q) {
   static thread_local StrainTable table;
   if (!sampling.is_pointwise())
-    throw Error::input("assumed strains have no derivatives by the factors of cells");
+    throw Error::input(
+        "assumed strains have no derivatives with respect to the scale factors of cells");
   sampling.tabulate(from, e, table);
   table.rate.clear();  // rates at fixed points contain no flow
   field().set(measure, table, q);
@@ -110,8 +111,8 @@ StrainTable& strains_at_points(const StrainSampling& sampling, const StrainMeasu
 
 }  // namespace
 
-void ElasticTerm::add_factor_slopes(int e, const Local& x, const LocalRows& psi,
-                                    FactorSlopes& out) const {
+void ElasticTerm::add_scale_factor_gradient(int e, const Local& x, const LocalRows& psi,
+                                            ScaleFactorGradient& out) const {
   const StrainSource from{*element_, *factors_, {}};
   StrainVector s;
   for (const ElasticPart& part : parts_) {
@@ -127,7 +128,8 @@ void ElasticTerm::add_factor_slopes(int e, const Local& x, const LocalRows& psi,
   }
 }
 
-void ElasticTerm::add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const {
+void ElasticTerm::add_energy_gradient(int e, const Local& x, double weight,
+                                      ScaleFactorGradient& out) const {
   const StrainSource from{*element_, *factors_, {}};
   for (const ElasticPart& part : parts_) {
     strains_at_points(*part.sampling, part.density->strain(), from, e, x.q);
@@ -153,7 +155,7 @@ void ElasticTerm::add_line_energy(std::span<const ShapeTable> line, const Local&
   }
 }
 
-void StrainTables::prepare(const Element& element, const Factors& factors, bool all,
+void StrainTables::prepare(const Element& element, const ScaleFactors& factors, bool all,
                            std::span<const std::shared_ptr<const StrainSampling>> samplings) {
   tables_.resize(samplings.size());
   const StrainSource from{element, factors, element.reference()};
@@ -181,7 +183,7 @@ class Elastic final : public ElasticTerm {
       : ElasticTerm(std::move(name), std::move(parts)) {}
   std::unique_ptr<Term> clone() const override { return make_elastic_term(name(), parts()); }
 
-  void prepare(const Element& element, const Factors& factors, bool all) override {
+  void prepare(const Element& element, const ScaleFactors& factors, bool all) override {
     prepare_parts(element, factors);
     tables_.prepare(element, factors, all, samplings_of(parts()));
   }
@@ -259,9 +261,9 @@ class Dissipative final : public StrainTerm,
   std::unique_ptr<Term> clone() const override { return make_dissipative_term(name_, parts_); }
   std::string name() const override { return name_; }
 
-  void prepare(const Element& element, const Factors& factors, bool all) override {
+  void prepare(const Element& element, const ScaleFactors& factors, bool all) override {
     if (element.n_scalars() > 0)
-      throw Error::input("term '" + name_ + "' does not know free material lines");
+      throw Error::input("term '" + name_ + "' does not support free material lines");
     element_ = &element;
     factors_ = &factors;
     tables_.prepare(element, factors, all, samplings_of(parts_));
@@ -296,13 +298,14 @@ class Dissipative final : public StrainTerm,
     }
   }
 
-  void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
-                         FactorSlopes& out) const override {
+  void add_scale_factor_gradient(int e, const Local& x, const LocalRows& psi,
+                                 ScaleFactorGradient& out) const override {
     const StrainSource from{*element_, *factors_, {}};
     StrainVector s;
     for (const DissipativePart& part : parts_) {
       if (!part.sampling->is_pointwise())
-        throw Error::input("assumed strains have no derivatives by the factors of cells");
+        throw Error::input(
+            "assumed strains have no derivatives with respect to the scale factors of cells");
       StrainTable table;
       part.sampling->tabulate(from, e, table);
       StrainField& at = field();
@@ -376,7 +379,7 @@ class Dissipative final : public StrainTerm,
   std::string name_;
   std::vector<DissipativePart> parts_;
   const Element* element_ = nullptr;
-  const Factors* factors_ = nullptr;
+  const ScaleFactors* factors_ = nullptr;
   StrainTables tables_;
 };
 

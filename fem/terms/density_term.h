@@ -3,7 +3,7 @@
 #include "fem/shapes/gram_gradient.h"
 #include "fem/shapes/strain.h"
 #include "fem/strain_term.h"
-#include "fem/terms/free_work.h"
+#include "fem/terms/eulerian_work.h"
 
 /// Terms that are defined by energy densities or dissipation densities.
 namespace flexmorph::fem {
@@ -13,23 +13,24 @@ namespace flexmorph::fem {
 /// classes add closed forms.
 class ElasticTerm : public StrainTerm,
                     public MeanForceTerm,
-                    public FreeLineTerm,
+                    public EulerianLineTerm,
                     public DesignedTerm,
                     public ElasticEnergy,
                     public FlowTerm {
  public:
   std::string name() const override { return name_; }
 
-  void add_free_force(int e, const Local& x, FreeForce& force) const override;
-  void add_free_tangent(int e, const Local& x, const Weights& w,
-                        FreeTangent& tangent) const override;
+  void add_eulerian_force(int e, const Local& x, EulerianForce& force) const override;
+  void add_eulerian_tangent(int e, const Local& x, const Weights& w,
+                            EulerianTangent& tangent) const override;
   void add_mean_force(int e, const LocalStep& x, LocalRows& force) const override;
   void add_mean_tangent(int e, const LocalStep& x, const Weights& w,
                         LocalTangent& tangent) const override;
-  void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
-                         FactorSlopes& out) const override;
-  void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const override;
-  /// Returns the energy by energy_at(), or by FreeElastic in elements with free lines.
+  void add_scale_factor_gradient(int e, const Local& x, const LocalRows& psi,
+                                 ScaleFactorGradient& out) const override;
+  void add_energy_gradient(int e, const Local& x, double weight,
+                           ScaleFactorGradient& out) const override;
+  /// Returns the energy by energy_at(), or by EulerianElastic in elements with free lines.
   Energies energies(int e, const Local& x) const final;
   double flow_power(int e, const Local& x) const override;
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
@@ -41,7 +42,7 @@ class ElasticTerm : public StrainTerm,
 
   /// Prepares the data of the functions above; prepare() of a derived class must call it.
   /// @throws Error (input) for free lines if a density does not support them.
-  void prepare_parts(const Element& element, const Factors& factors);
+  void prepare_parts(const Element& element, const ScaleFactors& factors);
   /// Returns the strain energy of an element without free lines [J].
   virtual double energy_at(int e, const Local& x) const = 0;
 
@@ -50,24 +51,24 @@ class ElasticTerm : public StrainTerm,
   /// Returns the elements of the last prepare_parts().
   const Element& element() const { return *element_; }
   /// Returns the scale factors of the last prepare_parts().
-  const Factors& factors() const { return *factors_; }
+  const ScaleFactors& factors() const { return *factors_; }
   /// Returns true if an element has free lines.
   bool is_free(int e) const { return !free_.empty() && free_.front().has(e); }
 
  private:
   std::string name_;
   std::vector<ElasticPart> parts_;
-  std::vector<FreeTables> free_;  // one per density
+  std::vector<EulerianTables> free_;  // one per density
   GramGradient gradient_;
   const Element* element_ = nullptr;
-  const Factors* factors_ = nullptr;
+  const ScaleFactors* factors_ = nullptr;
 };
 
 /// Tables of the strains of all elements, for the densities of a term.
 class StrainTables {
  public:
   /// Tabulates the strains of all elements, or only of elements whose lines move if `all` is false.
-  void prepare(const Element& element, const Factors& factors, bool all,
+  void prepare(const Element& element, const ScaleFactors& factors, bool all,
                std::span<const std::shared_ptr<const StrainSampling>> samplings);
   /// Returns the table of one density and element.
   const StrainTable& of(size_t part, int e) const { return tables_[part][static_cast<size_t>(e)]; }

@@ -43,23 +43,23 @@ void ElementInvariants::number(int kinds, bool coupled) {
     number_as<4>(coupled, pairs_, function_m_, function_n_);
   else
     throw Error::input("term 'membrane' needs 1, 3 or 4 vectors at each of four nodes");
-  places_ = invariant_places(pairs_, function_m_, function_n_);
+  value_indices_ = invariant_indices(pairs_, function_m_, function_n_);
 }
 
-void ElementInvariants::begin(const Element& element, const Factors& factors, bool all) {
+void ElementInvariants::begin(const Element& element, const ScaleFactors& factors, bool all) {
   tabulated_ = -1;
   scaled_from_ = nullptr;
   moments_.follow(element, factors, factors.stiffness, kDegree + 1, all);
 }
 
 ElementInvariants::Packed ElementInvariants::of(const Element& element, int e,
-                                                const Factors& factors) {
+                                                const ScaleFactors& factors) {
   std::swap(previous_, table_);
   // The number of points is that of an integration with scale factors in the weights, twice the
   // usual degree.
   const bool weighed = weigh(e, weights_);
   const int degree = weighed ? 2 * kDegree : kinds_ == 1 ? kCellDegree : kDegree;
-  const FactorKind kind = weighed ? FactorKind::none : FactorKind::stiffness;
+  const ScaleFactorKind kind = weighed ? ScaleFactorKind::none : ScaleFactorKind::stiffness;
   if (!element.tabulate_products(e, degree, factors, kind, table_))
     throw Error::input("term 'membrane' needs shape functions that are products along m and n");
   if (weighed) table_.weight = weights_;
@@ -97,7 +97,7 @@ ElementInvariants::Packed ElementInvariants::scaled() {
 std::vector<double> ElementInvariants::of_table(const ProductTable& table) const {
   const ProductTable classes = even_and_odd(table, function_m_, function_n_);
   return strains_ == Strains::displacement
-             ? membrane_invariant(classes, places_, elasticity_)
+             ? membrane_invariant(classes, value_indices_, elasticity_)
              : assumed_membrane_invariant(classes, pairs_, elasticity_);
 }
 

@@ -31,11 +31,11 @@ class ElementInvariants {
   void number(int kinds, bool coupled);
   /// Starts the computation for a mesh.
   /// @param all  true if the mesh or its material has changed, false if only lines have moved
-  void begin(const Element& element, const Factors& factors, bool all);
+  void begin(const Element& element, const ScaleFactors& factors, bool all);
 
   /// Returns the lower triangles of the blocks of W of element e, row by row.
   /// @throws Error (input) where the shape functions are not products along m and n.
-  Packed of(const Element& element, int e, const Factors& factors);
+  Packed of(const Element& element, int e, const ScaleFactors& factors);
   /// Computes weights of n x n points of element e that include the scale factors, n = kDegree + 1.
   /// @returns false unless the material is a design and the elements cover many cells.
   bool weigh(int e, MatrixXd& weights) const { return moments_.weigh(e, weights); }
@@ -58,11 +58,11 @@ class ElementInvariants {
   Strains strains_;
   int kinds_ = 0;
   bool coupled_ = false;
-  PairNumbers pairs_;       // of gram::Numbering
-  InvariantPlaces places_;  // indices of the entries of W
+  PairNumbers pairs_;               // of gram::Numbering
+  InvariantIndices value_indices_;  // indices of the entries of W
   // Even or odd function of every vector.
   std::vector<int> function_m_, function_n_;
-  FactorMoments moments_;
+  ScaleFactorMoments moments_;
   ProductTable table_, previous_;
   int tabulated_ = -1;  // element of table_
   MatrixXd weights_;

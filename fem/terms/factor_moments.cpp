@@ -29,8 +29,8 @@ VectorXd integrals(int n, int k, std::pair<int, int> cells, double start, double
 
 }  // namespace
 
-void FactorMoments::follow(const Element& element, const Factors& factors, const VectorXd& factor,
-                           int n, bool all) {
+void ScaleFactorMoments::follow(const Element& element, const ScaleFactors& factors,
+                                const VectorXd& factor, int n, bool all) {
   const bool cut =
       element.n_shapes() != 4 && !factors.uniform() && element.cells(0, factors.grid).i1 > 0;
   if (!cut) return rows_.clear();
@@ -39,15 +39,15 @@ void FactorMoments::follow(const Element& element, const Factors& factors, const
   if (all || rows_.empty() || across_ != lines[1]) prepare(lines[1], factors.grid, factor, n);
 }
 
-bool FactorMoments::weigh(int e, MatrixXd& out) const {
+bool ScaleFactorMoments::weigh(int e, MatrixXd& out) const {
   if (rows_.empty()) return false;
   const auto i = static_cast<size_t>(e) / rows_.size(), j = static_cast<size_t>(e) % rows_.size();
   weights(along_[i], along_[i + 1], static_cast<int>(j), out);
   return true;
 }
 
-void FactorMoments::prepare(const std::vector<double>& across, const Grid& grid,
-                            const VectorXd& factor, int n) {
+void ScaleFactorMoments::prepare(const std::vector<double>& across, const Grid& grid,
+                                 const VectorXd& factor, int n) {
   grid_ = grid;
   n_ = n;
   across_ = across;
@@ -63,7 +63,7 @@ void FactorMoments::prepare(const std::vector<double>& across, const Grid& grid,
   }
 }
 
-void FactorMoments::weights(double start, double end, int j, MatrixXd& out) const {
+void ScaleFactorMoments::weights(double start, double end, int j, MatrixXd& out) const {
   const auto row = static_cast<size_t>(j);
   const auto cells = cells_of(start, end, grid_.x0, grid_.dx(), grid_.nx);
   const double area = (end - start) * (across_[row + 1] - across_[row]);

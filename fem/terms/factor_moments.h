@@ -18,14 +18,14 @@ namespace flexmorph::fem {
 /// With the moments, the weights of an element's n x n points, exact up to degree n - 1 in each
 /// direction, have a cost proportional to the columns of cells in the element, not to all its
 /// cells. Therefore its m-lines may move in every step.
-class FactorMoments {
+class ScaleFactorMoments {
  public:
   /// Computes the moments of a mesh whose elements cover many cells of a design. They are
   /// recomputed if `all` is true (the design has changed) or if the n-lines have changed. Meshes of
   /// cells, uniform material and elements that take no scale factors (and throw when they are
   /// tabulated) have no moments.
   /// @param factor  scale factors of all cells, one of the two kinds in `factors`
-  void follow(const Element& element, const Factors& factors, const VectorXd& factor, int n,
+  void follow(const Element& element, const ScaleFactors& factors, const VectorXd& factor, int n,
               bool all);
   /// Computes the weights of the points (g, h) of element e, with the lines of the last follow()
   /// [m²].

@@ -19,11 +19,12 @@ Vec3 at(const Row& row, const LocalRows& q) {
 }
 
 void check(const Element& element, const std::string& what) {
-  if (element.dim() != 3) throw Error::input(what + " needs a body in space");
+  if (element.dim() != 3) throw Error::input(what + " needs a three-dimensional body");
 }
 
 void check_still(const Element& element, int e, const std::string& what) {
-  if (element.moving(e)) throw Error::input(what + ": in an element whose material lines move");
+  if (element.moving(e))
+    throw Error::input(what + " cannot act on an element whose material lines move");
 }
 
 /// Pressure that follows the surface:  δW = ∫ p (r_m × r_n) · δr dA  over the reference area. It is
@@ -38,13 +39,13 @@ class Pressure final : public LoadTerm {
   explicit Pressure(const LoadLaw& pressure) : LoadTerm(pressure, true) {}
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<Pressure>(*this); }
-  void prepare(const Element& element, const Factors&, bool all) override {
+  void prepare(const Element& element, const ScaleFactors&, bool all) override {
     check(element, "pressure");
     if (!all) return;
     tables_.resize(static_cast<size_t>(element.n_elements()));
     for (int e = 0; e < element.n_elements(); ++e) check_still(element, e, "pressure");
     for (int e = 0; e < element.n_elements(); ++e)
-      element.tabulate(e, 8, Tabulate::gradient, {}, FactorKind::none,
+      element.tabulate(e, 8, Tabulate::gradient, {}, ScaleFactorKind::none,
                        tables_[static_cast<size_t>(e)]);
   }
   void add_force(int e, const Local& x, LocalRows& force) const override {
@@ -85,13 +86,13 @@ class Pressure final : public LoadTerm {
 /// The force h = σ M n̂/|s| on s has the derivative
 ///
 ///   ∂h = σ M ( (1 - n̂ n̂ᵀ) ∂n / (|n| |s|) - n̂ (s · ∂s) / |s|³ )
-class EdgeMoment final : public LoadTerm, public FreeLineTerm {
+class EdgeMoment final : public LoadTerm, public EulerianLineTerm {
  public:
   EdgeMoment(std::string edge, const LoadLaw& moment)
       : LoadTerm(moment, true), edge_(std::move(edge)) {}
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<EdgeMoment>(*this); }
-  void prepare(const Element& element, const Factors&, bool all) override {
+  void prepare(const Element& element, const ScaleFactors&, bool all) override {
     check(element, "moment of edge '" + edge_ + "'");
     if (!all) return;
     const std::vector<NodeVectors> nodes = element.edge(edge_);
@@ -136,8 +137,8 @@ class EdgeMoment final : public LoadTerm, public FreeLineTerm {
     }
   }
   // Edges of elements whose lines move are not accepted, so that free elements have no load.
-  void add_free_force(int, const Local&, FreeForce&) const override {}
-  void add_free_tangent(int, const Local&, const Weights&, FreeTangent&) const override {}
+  void add_eulerian_force(int, const Local&, EulerianForce&) const override {}
+  void add_eulerian_tangent(int, const Local&, const Weights&, EulerianTangent&) const override {}
   std::string name() const override { return "edge moment"; }
 
  private:

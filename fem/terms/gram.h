@@ -6,7 +6,7 @@
 #include "fem/shapes/batch.h"
 
 /// Kernels of the Gram form of the in-plane elastic force (fem/terms/membrane.cpp), for one element
-/// (V = double) or eight elements side by side (V = LanesOf<...>).
+/// (V = double) or eight elements side by side (V = PackOf<...>).
 ///
 /// With vectors p_i, g_ij = p_i·p_j (i < j) and g_ii = ½ p_i·p_i, U = ½ (g - g°)ᵀ W (g - g°):
 ///
@@ -80,7 +80,7 @@ constexpr int square(int m) { return m * m; }
 
 /// Returns the number of entries that store W: of all pairs, or of its four blocks.
 template <int kKinds>
-constexpr int n_stored(Coupling coupling, int (*size)(int)) {
+constexpr int n_reservoirs(Coupling coupling, int (*size)(int)) {
   using N = Numbering<kKinds>;
   if (coupling == Coupling::all) return size(N::n_pairs);
   int n = 0;
@@ -99,7 +99,7 @@ struct Different {
 };
 /// W of one of eight elements.
 struct OneOf {
-  const Lanes* w;                       ///< Packed entries of eight elements.
+  const Pack* w;                        ///< Packed entries of eight elements.
   int lane;                             ///< SIMD lane of the element.
   static constexpr auto size = packed;  ///< Number of entries of a block of m pairs.
   /// Returns the entry of two pairs of the block.

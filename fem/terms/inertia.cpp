@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "fem/terms.h"
+#include "fem/terms/eulerian_work.h"
 #include "fem/terms/factor_moments.h"
-#include "fem/terms/free_work.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -23,7 +23,7 @@ namespace {
 class Inertia final : public Term,
                       public BatchTerm,
                       public LinearMeanForce<Inertia>,
-                      public FreeLineTerm,
+                      public EulerianLineTerm,
                       public DesignedTerm,
                       public FlowTerm {
  public:
@@ -32,7 +32,7 @@ class Inertia final : public Term,
 
   /// Creates an unprepared term, because prepared data would be recomputed anyway.
   std::unique_ptr<Term> clone() const override { return make_inertia(section_); }
-  void prepare(const Element& element, const Factors& factors, bool all) override {
+  void prepare(const Element& element, const ScaleFactors& factors, bool all) override {
     element_ = &element;
     factors_ = &factors;
     free_.prepare(element, kDegree, Tabulate::position, factors);
@@ -69,7 +69,7 @@ class Inertia final : public Term,
         for (Eigen::Index c = 0; c < d; ++c) tangent(d * k + c, d * l + c) += scalar(k, l);
   }
 
-  void add_forces(const Batch& x, Lanes* force) const override {
+  void add_forces(const Batch& x, Pack* force) const override {
     const LaneMatrices& m = batches_[static_cast<size_t>(x.first / kLanes)];
     run_batch_kernel([&]<class V>() {
       add_product<V>(m.mass, x.a, x, force);
@@ -79,13 +79,13 @@ class Inertia final : public Term,
     });
   }
 
-  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+  void add_tangents(const Batch& x, const Weights& w, Pack* tangent) const override {
     const LaneMatrices& m = batches_[static_cast<size_t>(x.first / kLanes)];
     const auto n = static_cast<size_t>(x.n_shapes), d = static_cast<size_t>(x.dim);
     run_batch_kernel([&]<class V>() {
-      const V *mass = lanes_as<V>(m.mass.data()), *convection = lanes_as<V>(m.convection.data()),
-              *transport = lanes_as<V>(m.transport.data());
-      V* out = lanes_as<V>(tangent);
+      const V *mass = packs_as<V>(m.mass.data()), *convection = packs_as<V>(m.convection.data()),
+              *transport = packs_as<V>(m.transport.data());
+      V* out = packs_as<V>(tangent);
       for (size_t l = 0; l < n; ++l)
         for (size_t k = 0; k < n; ++k) {
           const size_t at = l * n + k;
@@ -96,11 +96,11 @@ class Inertia final : public Term,
     });
   }
 
-  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+  void add_eulerian_force(int e, const Local& x, EulerianForce& force) const override {
     of_free_.add_force(free_.of(e), x, force);
   }
-  void add_free_tangent(int e, const Local& x, const Weights& w,
-                        FreeTangent& tangent) const override {
+  void add_eulerian_tangent(int e, const Local& x, const Weights& w,
+                            EulerianTangent& tangent) const override {
     of_free_.add_tangent(free_.of(e), x, w, tangent);
   }
 
@@ -121,15 +121,15 @@ class Inertia final : public Term,
     return {.kinetic = 0.5 * twice};
   }
 
-  void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
-                         FactorSlopes& out) const override {
+  void add_scale_factor_gradient(int e, const Local& x, const LocalRows& psi,
+                                 ScaleFactorGradient& out) const override {
     const CellRange at = element_->cells(e, factors_->grid);
     if (x.q.rows() == 4 && at.single() && !element_->moving(e)) {
-      out.mass[factors_->grid.cell(at.i0, at.j0)] += bilinear_slope(at.area, x, psi);
+      out.mass[factors_->grid.cell(at.i0, at.j0)] += bilinear_derivative(at.area, x, psi);
       return;
     }
     static thread_local ShapeTable t;
-    element_->tabulate(e, kDegree, Tabulate::position_rates, *factors_, FactorKind::mass, t);
+    element_->tabulate(e, kDegree, Tabulate::position_rates, *factors_, ScaleFactorKind::mass, t);
     MatrixXd acceleration = t.N * x.a;
     if (t.N_t.size() > 0) acceleration += 2 * t.N_t * x.v + t.N_tt * x.q;
     const VectorXd values = area_density_ * (t.N * psi).cwiseProduct(acceleration).rowwise().sum();
@@ -178,7 +178,7 @@ class Inertia final : public Term,
   /// Matrices of eight elements, by columns; convection and transport only where lines of one of
   /// them move.
   struct LaneMatrices {
-    std::vector<Lanes> mass, convection, transport;  // (n_shapes²)
+    std::vector<Pack> mass, convection, transport;  // (n_shapes²)
   };
 
   void side_by_side(int first, int last, LaneMatrices& out) const {
@@ -201,11 +201,11 @@ class Inertia final : public Term,
 
   /// Adds matrix times x to the force, for every SIMD lane.
   template <class V>
-  static void add_product(const std::vector<Lanes>& matrix, const Lanes* x, const Batch& batch,
-                          Lanes* force) {
+  static void add_product(const std::vector<Pack>& matrix, const Pack* x, const Batch& batch,
+                          Pack* force) {
     const int n = batch.n_shapes, d = batch.dim;
-    const V *entries = lanes_as<V>(matrix.data()), *factors = lanes_as<V>(x);
-    V* out = lanes_as<V>(force);
+    const V *entries = packs_as<V>(matrix.data()), *factors = packs_as<V>(x);
+    V* out = packs_as<V>(force);
     for (int c = 0; c < d; ++c)
       for (int k = 0; k < n; ++k) {
         V sum = out[d * k + c];
@@ -214,19 +214,19 @@ class Inertia final : public Term,
       }
   }
 
-  void tabulate(const Element& element, int e, const Factors& factors) {
+  void tabulate(const Element& element, int e, const ScaleFactors& factors) {
     if (!moments_.weigh(e, weights_))
-      return element.tabulate(e, kDegree, Tabulate::position_rates, factors, FactorKind::mass,
+      return element.tabulate(e, kDegree, Tabulate::position_rates, factors, ScaleFactorKind::mass,
                               table_);
     // The number of points is that of an integration with scale factors in the weights, twice the
     // usual degree.
-    element.tabulate(e, 2 * kDegree, Tabulate::position_rates, {}, FactorKind::none, table_);
+    element.tabulate(e, 2 * kDegree, Tabulate::position_rates, {}, ScaleFactorKind::none, table_);
     for (Eigen::Index g = 0; g < weights_.rows(); ++g)
       for (Eigen::Index h = 0; h < weights_.cols(); ++h)
         table_.weight[g * weights_.cols() + h] = weights_(g, h);
   }
 
-  void integrate(const Element& element, int e, const Factors& factors) {
+  void integrate(const Element& element, int e, const ScaleFactors& factors) {
     tabulate(element, e, factors);
     Matrices& m = matrices_[static_cast<size_t>(e)];
     m.flows = element.moving(e);
@@ -244,7 +244,7 @@ class Inertia final : public Term,
 
   /// Returns ψ · M a of a full bilinear cell, M = ρh A/36 [4 2 1 2; ...] with corners in turn
   /// around it.
-  double bilinear_slope(double area, const Local& x, const LocalRows& psi) const {
+  double bilinear_derivative(double area, const Local& x, const LocalRows& psi) const {
     double sum = 0;
     for (Eigen::Index k = 0; k < 4; ++k)
       for (Eigen::Index l = 0; l < 4; ++l) {
@@ -257,14 +257,14 @@ class Inertia final : public Term,
 
   static constexpr int kDegree = 6;  // polynomial degree of N Nᵀ
   const Element* element_ = nullptr;
-  const Factors* factors_ = nullptr;
+  const ScaleFactors* factors_ = nullptr;
   PlaneSection section_;
   double area_density_;
-  FreeInertia of_free_;
-  FreeTables free_;
+  EulerianInertia of_free_;
+  EulerianTables free_;
   std::vector<Matrices> matrices_;
   std::vector<LaneMatrices> batches_;
-  FactorMoments moments_;
+  ScaleFactorMoments moments_;
   ShapeTable table_;
   MatrixXd weighted_, weights_;
 };
@@ -278,9 +278,9 @@ std::unique_ptr<Term> make_inertia(const PlaneSection& section) {
 const TermRow& inertia_row() {
   static const TermRow kRow{
       .name = "inertia",
-      .sentence = "Inertia of a body through whose mesh material may flow.",
+      .sentence = "Inertia forces of a body; material may flow through its mesh.",
       .role = "inertia",
-      .places = {TermPlace::plane, TermPlace::space, TermPlace::beam},
+      .domains = {TermDomain::plane, TermDomain::space, TermDomain::beam},
       .required_in = {},
       .moves = true,
       .on_cells = true,

@@ -1,7 +1,7 @@
 #include "fem/loads.h"
 
 #include "fem/load_term.h"
-#include "fem/terms/free_work.h"
+#include "fem/terms/eulerian_work.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 class Gravity final : public LoadTerm,
                       public BatchTerm,
                       public LinearMeanForce<Gravity>,
-                      public FreeLineTerm,
+                      public EulerianLineTerm,
                       public DesignedTerm,
                       public FlowTerm {
  public:
@@ -20,9 +20,9 @@ class Gravity final : public LoadTerm,
         of_free_(area_density_, load(), false) {}
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<Gravity>(*this); }
-  void prepare(const Element& element, const Factors& factors, bool all) override {
+  void prepare(const Element& element, const ScaleFactors& factors, bool all) override {
     if (!has_potential() && element.n_scalars() > 0)
-      throw Error::input("gravity that varies: on a body with free lines");
+      throw Error::input("gravity that varies cannot act on a body with free material lines");
     element_ = &element;
     factors_ = &factors;
     free_.prepare(element, 6, Tabulate::position, factors);
@@ -31,7 +31,7 @@ class Gravity final : public LoadTerm,
     ShapeTable table;
     for (int e = 0; e < element.n_elements(); ++e) {
       if ((!all && !element.moving(e)) || free_.has(e)) continue;
-      element.tabulate(e, kDegree, Tabulate::position_rates, factors, FactorKind::mass, table);
+      element.tabulate(e, kDegree, Tabulate::position_rates, factors, ScaleFactorKind::mass, table);
       mass_[static_cast<size_t>(e)] = area_density_ * table.N.transpose() * table.weight;
       rate_[static_cast<size_t>(e)] =
           element.moving(e) ? VectorXd(area_density_ * table.N_t.transpose() * table.weight)
@@ -42,27 +42,27 @@ class Gravity final : public LoadTerm,
     force.noalias() -= factor() * mass_[static_cast<size_t>(e)] * load().transpose();
   }
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
-  void add_forces(const Batch& x, Lanes* force) const override {
+  void add_forces(const Batch& x, Pack* force) const override {
     for (int k = 0; k < x.n_shapes; ++k) {
-      Lanes mass{};
+      Pack mass{};
       for (int lane = 0; lane < x.count; ++lane)
         mass[lane] = mass_[static_cast<size_t>(x.first + lane)][k];
       for (int c = 0; c < x.dim; ++c) force[x.dim * k + c] -= factor() * load()[c] * mass;
     }
   }
-  void add_tangents(const Batch&, const Weights&, Lanes*) const override {}
+  void add_tangents(const Batch&, const Weights&, Pack*) const override {}
 
-  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+  void add_eulerian_force(int e, const Local& x, EulerianForce& force) const override {
     of_free_.add_force(free_.of(e), x, force);
   }
-  void add_free_tangent(int e, const Local& x, const Weights& w,
-                        FreeTangent& tangent) const override {
+  void add_eulerian_tangent(int e, const Local& x, const Weights& w,
+                            EulerianTangent& tangent) const override {
     of_free_.add_tangent(free_.of(e), x, w, tangent);
   }
 
   std::string name() const override { return "gravity"; }
-  void add_factor_slopes(int e, const Local&, const LocalRows& psi,
-                         FactorSlopes& out) const override {
+  void add_scale_factor_gradient(int e, const Local&, const LocalRows& psi,
+                                 ScaleFactorGradient& out) const override {
     const CellRange at = element_->cells(e, factors_->grid);
     if (psi.rows() == 4 && at.single()) {  // bilinear: a quarter of the weight at each corner
       out.mass[factors_->grid.cell(at.i0, at.j0)] -=
@@ -70,7 +70,7 @@ class Gravity final : public LoadTerm,
       return;
     }
     static thread_local ShapeTable t;
-    element_->tabulate(e, kDegree, Tabulate::position, *factors_, FactorKind::mass, t);
+    element_->tabulate(e, kDegree, Tabulate::position, *factors_, ScaleFactorKind::mass, t);
     const VectorXd values = -factor() * area_density_ * t.N * (psi * load());
     element_->add_cell_integrals(e, kDegree, values, factors_->grid, out.mass);
   }
@@ -98,10 +98,10 @@ class Gravity final : public LoadTerm,
  private:
   static constexpr int kDegree = 3;  // polynomial degree of N
   const Element* element_ = nullptr;
-  const Factors* factors_ = nullptr;
+  const ScaleFactors* factors_ = nullptr;
   double area_density_;
-  FreeInertia of_free_;
-  FreeTables free_;
+  EulerianInertia of_free_;
+  EulerianTables free_;
   std::vector<VectorXd> mass_, rate_;  // ∫ρh N, ∫ρh Ṅ per element (n_shapes)
 };
 
@@ -109,14 +109,14 @@ class Gravity final : public LoadTerm,
 class PointMass final : public LoadTerm,
                         public BatchTerm,
                         public LinearMeanForce<PointMass>,
-                        public FreeLineTerm,
+                        public EulerianLineTerm,
                         public FlowTerm {
  public:
   PointMass(double mass, const Vec2& material, const LoadLaw& gravity)
       : LoadTerm(gravity), mass_(mass), material_(material) {}
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<PointMass>(*this); }
-  void prepare(const Element& element, const Factors&, bool) override {
+  void prepare(const Element& element, const ScaleFactors&, bool) override {
     element_ = element.locate(material_, Tabulate::position_rates, table_);
     flows_ = table_.N_t.size() > 0;
     if (!element.free_sides(element_).empty()) check_fixed(element, element_, material_);
@@ -136,20 +136,20 @@ class PointMass final : public LoadTerm,
           tangent(d * k + c, d * l + c) += mass_ * table_.N(0, k) * row[l];
   }
   // Only one element carries the mass.
-  void add_forces(const Batch& x, Lanes* force) const override {
+  void add_forces(const Batch& x, Pack* force) const override {
     if (is_in(x)) add_force_of_lane(*this, x, element_ - x.first, force);
   }
-  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+  void add_tangents(const Batch& x, const Weights& w, Pack* tangent) const override {
     if (is_in(x)) add_tangent_of_lane(*this, x, element_ - x.first, w, tangent);
   }
   std::string name() const override { return "point mass"; }
-  void add_free_force(int e, const Local& x, FreeForce& force) const override {
+  void add_eulerian_force(int e, const Local& x, EulerianForce& force) const override {
     LocalRows rows = LocalRows::Zero(x.q.rows(), x.q.cols());
     add_force(e, x, rows);
     force.head(rows.size()) += Eigen::Map<const VectorXd>(rows.data(), rows.size());
   }
-  void add_free_tangent(int e, const Local& x, const Weights& w,
-                        FreeTangent& tangent) const override {
+  void add_eulerian_tangent(int e, const Local& x, const Weights& w,
+                            EulerianTangent& tangent) const override {
     LocalTangent rows = LocalTangent::Zero(x.q.size(), x.q.size());
     add_tangent(e, x, w, rows);
     tangent.topLeftCorner(x.q.size(), x.q.size()) += rows;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "fem/terms/cells/cell_slopes.h"
+#include "fem/terms/cells/cell_gradients.h"
 #include "fem/terms/cells/void_cells.h"
 #include "fem/terms/density_term.h"
 #include "fem/terms/element_invariants.h"
@@ -49,7 +49,7 @@ class Membrane final : public ElasticTerm, public BatchTerm {
 
   /// Creates an unprepared term, because prepared data would be recomputed anyway.
   std::unique_ptr<Term> clone() const override { return make_membrane(section_, strains_); }
-  void prepare(const Element& element, const Factors& factors, bool all) override {
+  void prepare(const Element& element, const ScaleFactors& factors, bool all) override {
     prepare_parts(element, factors);
     if (all) {
       dim_ = element.dim();
@@ -91,27 +91,27 @@ class Membrane final : public ElasticTerm, public BatchTerm {
         });
   }
 
-  void add_forces(const Batch& x, Lanes* force) const override {
+  void add_forces(const Batch& x, Pack* force) const override {
     run_batch_kernel([&]<class V>() {
       evaluate<V>(x, [&]<int kKinds, int kDim, Coupling>(V* s, const V* p, auto) {
         if constexpr (kKinds == 1) {
           if (const VoidCells& cells = of(x.first).cells; cells.any())
-            cells.add_force(VoidCells::AllLanes<V>{}, p, s, lanes_as<V>(force));
+            cells.add_force(VoidCells::AllPacks<V>{}, p, s, packs_as<V>(force));
         }
-        gram::add_force<kKinds, kDim>(s, p, lanes_as<V>(force));
+        gram::add_force<kKinds, kDim>(s, p, packs_as<V>(force));
       });
     });
   }
 
-  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
+  void add_tangents(const Batch& x, const Weights& w, Pack* tangent) const override {
     if (w.q == 0) return;
     run_batch_kernel([&]<class V>() {
       evaluate<V>(x, [&]<int kKinds, int kDim, Coupling coupling>(const V* s, const V* p,
                                                                   auto invariant) {
-        V* out = lanes_as<V>(tangent);
+        V* out = packs_as<V>(tangent);
         if constexpr (kKinds == 1) {
           if (const VoidCells& cells = of(x.first).cells; cells.any())
-            return cells.add_tangent<coupling>(VoidCells::AllLanes<V>{}, invariant, s, p, w.q, out);
+            return cells.add_tangent<coupling>(VoidCells::AllPacks<V>{}, invariant, s, p, w.q, out);
         }
         gram::add_tangent<kKinds, kDim, coupling>(invariant, s, p, p, w.q, out);
       });
@@ -153,25 +153,26 @@ class Membrane final : public ElasticTerm, public BatchTerm {
     if (!invariants_.weigh(e, weights)) return ElasticTerm::flow_power(e, x);
     ShapeTable t;
     element().tabulate(e, 2 * ElementInvariants::kDegree, Tabulate::gradient_rates, {},
-                       FactorKind::none, t);
+                       ScaleFactorKind::none, t);
     for (Eigen::Index g = 0; g < weights.rows(); ++g)
       for (Eigen::Index h = 0; h < weights.cols(); ++h)
         t.weight[g * weights.cols() + h] = weights(g, h);
     return fem::flow_power(*parts().front().density, t, x.q);
   }
 
-  void add_factor_slopes(int e, const Local& x, const LocalRows& psi,
-                         FactorSlopes& out) const override {
+  void add_scale_factor_gradient(int e, const Local& x, const LocalRows& psi,
+                                 ScaleFactorGradient& out) const override {
     if (kinds_ == 1)
-      add_slopes_of_cell(e, x.q.data(), psi.data(), 1, out.stiffness);
+      add_gradient_of_cell(e, x.q.data(), psi.data(), 1, out.stiffness);
     else
-      ElasticTerm::add_factor_slopes(e, x, psi, out);
+      ElasticTerm::add_scale_factor_gradient(e, x, psi, out);
   }
-  void add_energy_slopes(int e, const Local& x, double weight, FactorSlopes& out) const override {
+  void add_energy_gradient(int e, const Local& x, double weight,
+                           ScaleFactorGradient& out) const override {
     if (kinds_ == 1)
-      add_slopes_of_cell(e, x.q.data(), nullptr, weight, out.stiffness);
+      add_gradient_of_cell(e, x.q.data(), nullptr, weight, out.stiffness);
     else
-      ElasticTerm::add_energy_slopes(e, x, weight, out);
+      ElasticTerm::add_energy_gradient(e, x, weight, out);
   }
 
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
@@ -188,17 +189,17 @@ class Membrane final : public ElasticTerm, public BatchTerm {
   using Packed = ElementInvariants::Packed;
 
   struct BatchData {
-    Packed shared;                 // W as squares, if equal for all elements
-    std::vector<Lanes> different;  // W packed, if not equal
-    std::vector<Lanes> reference;  // g°
-    VoidCells cells;               // only with the shape set q4
+    Packed shared;                // W as squares, if equal for all elements
+    std::vector<Pack> different;  // W packed, if not equal
+    std::vector<Pack> reference;  // g°
+    VoidCells cells;              // only with the shape set q4
   };
 
-  void add_slopes_of_cell(int e, const double* q, const double* psi, double weight,
-                          VectorXd& out) const {
+  void add_gradient_of_cell(int e, const double* q, const double* psi, double weight,
+                            VectorXd& out) const {
     const BatchData& b = of(e);
-    add_cell_slopes(element(), factors(), invariants_, {b.different, b.reference, b.cells}, e, q,
-                    psi, weight, out);
+    add_cell_gradient(element(), factors(), invariants_, {b.different, b.reference, b.cells}, e, q,
+                      psi, weight, out);
   }
 
   const BatchData& of(int e) const { return batches_[static_cast<size_t>(e / kLanes)]; }
@@ -280,17 +281,17 @@ class Membrane final : public ElasticTerm, public BatchTerm {
   template <class V, class F>
   void evaluate(const Batch& x, const F& f) const {
     const BatchData& batch = batches_[static_cast<size_t>(x.first / kLanes)];
-    const V* reference = lanes_as<V>(batch.reference.data());
+    const V* reference = packs_as<V>(batch.reference.data());
     dispatch([&]<int kKinds, int kDim>() {
       V p[kMaxVectors * kDim], g[kMaxPairs], s[kMaxPairs];
-      gram::vectors<kKinds, kDim>(lanes_as<V>(x.q), p);
+      gram::vectors<kKinds, kDim>(packs_as<V>(x.q), p);
       gram::products<kKinds, kDim>(p, g);
       for (int k = 0; k < gram::Numbering<kKinds>::n_pairs; ++k) g[k] -= reference[k];
       const auto with = [&]<Coupling coupling>(auto w) {
         gram::multiply<kKinds, coupling>(w, g, s);
         f.template operator()<kKinds, kDim, coupling>(s, p, w);
       };
-      const gram::Different<V> different{lanes_as<V>(batch.different.data())};
+      const gram::Different<V> different{packs_as<V>(batch.different.data())};
       if (coupling_ == Coupling::all)
         with.template operator()<Coupling::all>(different);
       else if (batch.shared)
@@ -300,10 +301,10 @@ class Membrane final : public ElasticTerm, public BatchTerm {
     });
   }
 
-  void prepare_batch(const Element& element, int first, const Factors& factors,
+  void prepare_batch(const Element& element, int first, const ScaleFactors& factors,
                      const MatrixXd& reference, bool all, BatchData& out) {
     const int count = std::min(kLanes, element.n_elements() - first);
-    int n_moving = 0, n_free = 0;  // elements with free lines are evaluated by FreeElastic
+    int n_moving = 0, n_free = 0;  // elements with free lines are evaluated by EulerianElastic
     for (int lane = 0; lane < count; ++lane) {
       const bool free = is_free(first + lane);
       n_free += free;
@@ -333,8 +334,8 @@ class Membrane final : public ElasticTerm, public BatchTerm {
     }
     for (int lane = count; lane < kLanes; ++lane) {
       if (!alike)
-        for (Lanes& x : out.different) x[lane] = x[count - 1];
-      for (Lanes& x : out.reference) x[lane] = x[count - 1];
+        for (Pack& x : out.different) x[lane] = x[count - 1];
+      for (Pack& x : out.reference) x[lane] = x[count - 1];
     }
     if (coupling_ != Coupling::all || kinds_ != 1) return;
     out.cells.fill(count);

@@ -143,40 +143,41 @@ ProductTable even_and_odd(const ProductTable& table, const std::vector<int>& fun
           both(table.d_n), function_m,      function_n};
 }
 
-InvariantPlaces invariant_places(const PairNumbers& pairs, const std::vector<int>& function_m,
-                                 const std::vector<int>& function_n) {
+InvariantIndices invariant_indices(const PairNumbers& pairs, const std::vector<int>& function_m,
+                                   const std::vector<int>& function_n) {
   // Returns the number of {i, j} among the pairs of functions of one coordinate.
   const auto number = [](const std::vector<int>& function, int k, int l) {
     auto [i, j] = std::minmax(function[static_cast<size_t>(k)], function[static_cast<size_t>(l)]);
     return i * (2 * kFunctions - i + 1) / 2 + j - i;
   };
   // Returns the index of the pairs (a, b) and (c, d) of vectors in a matrix stored by columns.
-  const auto place = [&](int a, int b, int c, int d) {
+  const auto value_index = [&](int a, int b, int c, int d) {
     return number(function_m, a, b) * kPairs1d + number(function_m, c, d) +
            kRows * (number(function_n, a, b) * kPairs1d + number(function_n, c, d));
   };
-  InvariantPlaces out;
+  InvariantIndices out;
   for (size_t block = 0; block + 1 < pairs.starts.size(); ++block)
     for (auto p = static_cast<size_t>(pairs.starts[block]);
          p < static_cast<size_t>(pairs.starts[block + 1]); ++p)
       for (auto q = static_cast<size_t>(pairs.starts[block]); q <= p; ++q) {
         const int k = pairs.i[p], l = pairs.j[p], r = pairs.i[q], s = pairs.j[q];
         // ε₁₁ and ε₂₂ have N_k,m N_l,m and N_k,n N_l,n; 2ε₁₂ the symmetric N_k,m N_l,n.
-        out.normal.push_back(place(k, l, r, s));
-        out.shear.push_back(
-            {place(k, r, l, s), place(k, s, l, r), place(l, r, k, s), place(l, s, k, r)});
+        out.normal.push_back(value_index(k, l, r, s));
+        out.shear.push_back({value_index(k, r, l, s), value_index(k, s, l, r),
+                             value_index(l, r, k, s), value_index(l, s, k, r)});
       }
   return out;
 }
 
-std::vector<double> membrane_invariant(const ProductTable& table, const InvariantPlaces& places,
+std::vector<double> membrane_invariant(const ProductTable& table,
+                                       const InvariantIndices& value_indices,
                                        const Eigen::Matrix3d& elasticity) {
   const PointSums sums(table, elasticity);
   const double *normal = sums.normal.data(), *shear = sums.shear.data(), c33 = elasticity(2, 2);
-  std::vector<double> out(places.normal.size());
+  std::vector<double> out(value_indices.normal.size());
   for (size_t k = 0; k < out.size(); ++k) {
-    const std::array<int, 4>& at = places.shear[k];
-    out[k] = normal[places.normal[k]] +
+    const std::array<int, 4>& at = value_indices.shear[k];
+    out[k] = normal[value_indices.normal[k]] +
              c33 * (shear[at[0]] + shear[at[1]] + shear[at[2]] + shear[at[3]]);
   }
   return out;

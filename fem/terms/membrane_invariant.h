@@ -15,7 +15,7 @@ struct PairNumbers {
 
 /// Indices of the entries of W in sums over the points (membrane_invariant.cpp); they are equal for
 /// all elements of one kind.
-struct InvariantPlaces {
+struct InvariantIndices {
   /// Index in the sums of normal strains for each entry of W.
   std::vector<int> normal;
   /// Four indices in the sums of shear strains for each entry of W.
@@ -23,8 +23,8 @@ struct InvariantPlaces {
 };
 /// Returns the indices of the entries of W.
 /// @param function_m, function_n  function of one coordinate that belongs to every vector
-InvariantPlaces invariant_places(const PairNumbers& pairs, const std::vector<int>& function_m,
-                                 const std::vector<int>& function_n);
+InvariantIndices invariant_indices(const PairNumbers& pairs, const std::vector<int>& function_m,
+                                   const std::vector<int>& function_n);
 
 /// Returns a table with the sums and differences of the functions of one coordinate, which are even
 /// or odd over the element, instead of the functions themselves.
@@ -46,7 +46,8 @@ MatrixXd parabola_through_samples(int n);
 /// @param table  products at points that integrate polynomials of degree 12 in each direction
 /// @param elasticity  h C, Voigt order 11, 22, 12, without coupling of normal strains and shear
 /// @returns lower triangles of the blocks of W, row by row
-std::vector<double> membrane_invariant(const ProductTable& table, const InvariantPlaces& places,
+std::vector<double> membrane_invariant(const ProductTable& table,
+                                       const InvariantIndices& value_indices,
                                        const Eigen::Matrix3d& elasticity);
 /// Returns W of the Gram form for assumed strains, see membrane_invariant().
 ///

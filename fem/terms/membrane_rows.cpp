@@ -13,15 +13,15 @@ std::vector<ElasticPart> membrane_parts(const PlaneSection& section, Strains str
 namespace {
 
 template <Strains kStrains>
-TermRow row(const char* name, const char* sentence, std::vector<TermPlace> places) {
+TermRow row(const char* name, const char* sentence, std::vector<TermDomain> domains) {
   return {.name = name,
           .sentence = sentence,
           .role = "membrane",
-          .places = std::move(places),
-          .required_in = {TermPlace::space},
+          .domains = std::move(domains),
+          .required_in = {TermDomain::space},
           .designable = kStrains == Strains::displacement,
           .on_cells = kStrains == Strains::displacement,
-          .free_lines = kStrains == Strains::displacement,
+          .eulerian_lines = kStrains == Strains::displacement,
           .keys = {},
           .columns = {},
           .elastic = [](const TermData& d) { return membrane_parts(d.section, kStrains); },
@@ -31,18 +31,18 @@ TermRow row(const char* name, const char* sentence, std::vector<TermPlace> place
 }  // namespace
 
 const TermRow& membrane_row() {
-  static const TermRow kRow = row<Strains::displacement>(
-      "membrane", "Membrane forces, strains as the displacements have them.",
-      {TermPlace::plane, TermPlace::space});
+  static const TermRow kRow =
+      row<Strains::displacement>("membrane", "Membrane forces, without assumed strains.",
+                                 {TermDomain::plane, TermDomain::space});
   return kRow;
 }
 
 const TermRow& membrane_assumed_row() {
   static const TermRow kRow =
       row<Strains::assumed>("membrane_assumed",
-                            "Membrane forces with assumed strains: thin plates, and slender ones "
-                            "in the plane, do not lock.",
-                            {TermPlace::plane, TermPlace::space});
+                            "Membrane forces with assumed strains. Thin plates, and slender plates "
+                            "in the plane, do not lock with this term.",
+                            {TermDomain::plane, TermDomain::space});
   return kRow;
 }
 

@@ -9,13 +9,14 @@ namespace {
 
 void check(const RigidSection& s) {
   if (!(s.mass > 0) || !(s.inertia > 0) || !std::isfinite(s.mass) || !std::isfinite(s.inertia))
-    throw Error::input("rigid body: mass and inertia are positive [kg], [kg m²]");
+    throw Error::input(
+        "rigid body: the mass [kg] and the mass moment of inertia [kg m²] must be positive");
   if (!s.center.allFinite()) throw Error::input("rigid body: its centre of mass is not finite");
 }
 
 void check(const Element& element, const std::string& term) {
   if (!element.is_rigid())
-    throw Error::input("term '" + term + "' is one of rigid bodies, and this is none");
+    throw Error::input("term '" + term + "' is only available for rigid bodies");
 }
 
 /// Returns X 1 + Y J, J a rotation by 90 degrees; it maps u to X u + Y v.
@@ -45,7 +46,9 @@ class RigidInertia final : public Term, public LinearMeanForce<RigidInertia> {
   }
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<RigidInertia>(*this); }
-  void prepare(const Element& element, const Factors&, bool) override { check(element, name()); }
+  void prepare(const Element& element, const ScaleFactors&, bool) override {
+    check(element, name());
+  }
   void add_force(int, const Local& x, LocalRows& force) const override {
     const Eigen::Vector4d f = mass_ * column(x.a);
     for (int i = 0; i < 4; ++i) force.data()[i] += f[i];
@@ -76,12 +79,15 @@ class RigidGravity final : public LoadTerm, public LinearMeanForce<RigidGravity>
  public:
   RigidGravity(const RigidSection& s, const LoadLaw& gravity) : LoadTerm(gravity) {
     check(s);
-    if (gravity.size() != 2) throw Error::input("gravity of a planar rigid body has 2 components");
+    if (gravity.size() != 2)
+      throw Error::input("the gravity of a planar rigid body must have 2 components");
     mass_ << s.mass * Eigen::Matrix2d::Identity(), s.mass * arm(s.center).transpose();
   }
 
   std::unique_ptr<Term> clone() const override { return std::make_unique<RigidGravity>(*this); }
-  void prepare(const Element& element, const Factors&, bool) override { check(element, name()); }
+  void prepare(const Element& element, const ScaleFactors&, bool) override {
+    check(element, name());
+  }
   void add_force(int, const Local&, LocalRows& force) const override {
     const Eigen::Vector4d f = weight();
     for (int i = 0; i < 4; ++i) force.data()[i] -= f[i];

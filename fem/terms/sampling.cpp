@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fem/free_lines.h"
+#include "fem/eulerian_lines.h"
 #include "fem/terms/membrane_invariant.h"
 #include "fem/terms/strain_flow.h"
 
@@ -23,7 +23,7 @@ class Points final : public StrainSampling {
     const bool moves = from.element.moving(e);
     ShapeTable t;
     from.element.tabulate(e, degree_, moves ? with_rates(what_) : what_, from.factors,
-                          FactorKind::stiffness, t);
+                          ScaleFactorKind::stiffness, t);
     out = {t.weight, {t.N_m, t.N_n}, {}, {}, {}};
     if (moves) out.rate = {t.N_mt, t.N_nt};
     if (what_ == Tabulate::gradient) return;
@@ -54,8 +54,8 @@ class Assumed final : public StrainSampling {
     const MatrixXd one = MatrixXd::Identity(n, n), A = parabola_through_samples(n);
     out.mix = {both_ways(A, one), both_ways(one, A), both_ways(A, A)};
     if (out.rate.empty()) return;
-    FreeTable sides;  // only used for the positions of the lines
-    from.element.tabulate_free(e, 0, Tabulate::gradient, sides);
+    EulerianTable sides;  // only used for the positions of the lines
+    from.element.tabulate_eulerian(e, 0, Tabulate::gradient, sides);
     const MatrixXd K_m = ParabolaFlow(n, sides.side[kM1], sides.side[kM2]).K,
                    K_n = ParabolaFlow(n, sides.side[kN1], sides.side[kN2]).K;
     out.mix_rate = {both_ways(K_m, one), both_ways(one, K_n),

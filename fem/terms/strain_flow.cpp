@@ -13,7 +13,7 @@ const MatrixXd& rates_of(const ShapeTable& t, const Measure& m) {
   if (m.m_order == 2 && m.n_order == 0) return t.N_mmt;
   if (m.m_order == 0 && m.n_order == 2) return t.N_nnt;
   if (m.m_order == 1 && m.n_order == 1) return t.N_mnt;
-  throw Error::numerical("strain_flow: no table of the rate of this measure");
+  throw Error::numerical("strain_flow: the rate of this measure is not tabulated");
 }
 
 /// Computes the measures at point g, or their rates.
@@ -99,12 +99,12 @@ ParabolaFlow::ParabolaFlow(int n, const Motion& start, const Motion& end)
   K = flow.asDiagonal() * D * A - A * flow.asDiagonal() * D;
 }
 
-double assumed_flow_power(const Element& element, int e, const Factors& factors,
+double assumed_flow_power(const Element& element, int e, const ScaleFactors& factors,
                           const Eigen::Matrix3d& elasticity, const LocalRows& q) {
   ShapeTable t;
-  FreeTable sides;  // only used for the positions of the lines
-  element.tabulate(e, 12, Tabulate::gradient_rates, factors, FactorKind::stiffness, t);
-  element.tabulate_free(e, 0, Tabulate::gradient, sides);
+  EulerianTable sides;  // only used for the positions of the lines
+  element.tabulate(e, 12, Tabulate::gradient_rates, factors, ScaleFactorKind::stiffness, t);
+  element.tabulate_eulerian(e, 0, Tabulate::gradient, sides);
   const auto n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(t.weight.size()))));
   const ParabolaFlow m(n, sides.side[kM1], sides.side[kM2]),
       across(n, sides.side[kN1], sides.side[kN2]);

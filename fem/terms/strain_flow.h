@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "fem/terms/free_work.h"
+#include "fem/terms/eulerian_work.h"
 
 /// Effect of the flow of material through the mesh on the strain energy of an element. With the
 /// energy density W per area and mesh lines that move at the rates ṁ,
@@ -41,7 +41,7 @@ struct ParabolaFlow {
 /// Returns the flow power of assumed membrane strains [W], in a closed form of the result of
 /// ElasticTerm (density_term.h).
 /// @param elasticity  h C [N/m]
-double assumed_flow_power(const Element& element, int e, const Factors& factors,
+double assumed_flow_power(const Element& element, int e, const ScaleFactors& factors,
                           const Eigen::Matrix3d& elasticity, const LocalRows& q);
 /// Adds the energy of assumed membrane strains at the points of a line, in a closed form of the
 /// result of ElasticTerm (density_term.h).

@@ -67,12 +67,13 @@ struct Axes {
 /// Forces with components along axes that rotate with the body:  δW = Σ_p w_p (Σ_i f_i e_i) · δr.
 class TurningForce : public LoadTerm {
  public:
-  void prepare(const Element& element, const Factors&, bool all) override {
+  void prepare(const Element& element, const ScaleFactors&, bool all) override {
     if (load().size() != element.dim())
       throw Error::input(name() + ": " + std::to_string(load().size()) +
-                         " components, and the body lives in " + std::to_string(element.dim()) +
-                         " dimensions");
-    if (element.n_scalars() > 0) throw Error::input(name() + ": on a body with free lines");
+                         " components are given, but the body has " +
+                         std::to_string(element.dim()) + " dimensions");
+    if (element.n_scalars() > 0)
+      throw Error::input(name() + ": a body with free material lines is not supported");
     if (all) points_.assign(static_cast<size_t>(element.n_elements()), {});
     find(element, all);
   }
@@ -108,7 +109,8 @@ class TurningForce : public LoadTerm {
 
   void add_still(const Element& element, const Vec2& material, double weight) {
     const int e = element.locate(material, Tabulate::gradient, table_);
-    if (element.moving(e)) throw Error::input(name() + ": in an element whose material lines move");
+    if (element.moving(e))
+      throw Error::input(name() + ": an element whose material lines move is not supported");
     points_[static_cast<size_t>(e)].add(weight, table_);
   }
 
@@ -147,6 +149,9 @@ class TurningEdgeLoad final : public TurningForce {
   void find(const Element& element, bool all) override {
     if (!all) return;
     const std::vector<NodeVectors> nodes = element.edge(edge_);
+    if (nodes.size() == 1)
+      throw Error::input("load of edge '" + edge_ +
+                         "': the end of a beam is one node; a point force loads it");
     const GaussRule& rule = gauss(5);  // the integrand is no polynomial where the edge is bent
     for (size_t i = 0; i + 1 < nodes.size(); ++i) {
       const Vec2 from = nodes[i].material, along = nodes[i + 1].material - from;
@@ -168,7 +173,7 @@ class TurningSurfaceLoad final : public TurningForce {
   void find(const Element& element, bool all) override {
     for (int e = 0; e < element.n_elements(); ++e) {
       if (!all && !element.moving(e)) continue;
-      element.tabulate(e, kDegree, Tabulate::gradient, {}, FactorKind::none, table_);
+      element.tabulate(e, kDegree, Tabulate::gradient, {}, ScaleFactorKind::none, table_);
       points_[static_cast<size_t>(e)] = {table_.weight, table_.N, table_.N_m, table_.N_n};
     }
   }
@@ -186,13 +191,15 @@ class Moment final : public LoadTerm {
   Moment(const Vec2& material, const LoadLaw& moment)
       : LoadTerm(moment, true), material_(material) {}
   std::unique_ptr<Term> clone() const override { return std::make_unique<Moment>(*this); }
-  void prepare(const Element& element, const Factors&, bool all) override {
-    if (element.dim() != 2) throw Error::input("moment at a point: of a body in the plane");
-    if (element.n_scalars() > 0) throw Error::input("moment: on a body with free lines");
+  void prepare(const Element& element, const ScaleFactors&, bool all) override {
+    if (element.dim() != 2)
+      throw Error::input("a moment at a point can only act on a body in the plane");
+    if (element.n_scalars() > 0)
+      throw Error::input("a moment cannot act on a body with free material lines");
     if (!all) return;
     element_ = element.locate(material_, Tabulate::gradient, table_);
     if (element.moving(element_))
-      throw Error::input("moment: in an element whose material lines move");
+      throw Error::input("a moment cannot act on an element whose material lines move");
   }
   void add_force(int e, const Local& x, LocalRows& force) const override {
     if (e != element_) return;

@@ -11,7 +11,7 @@ namespace {
 class Heated final : public StrainTerm,
                      public BatchTerm,
                      public MeanForceTerm,
-                     public FreeLineTerm,
+                     public EulerianLineTerm,
                      public FlowTerm,
                      public ScaledLoad,
                      public HeatedTerm {
@@ -25,7 +25,7 @@ class Heated final : public StrainTerm,
     return out;
   }
 
-  void prepare(const Element& element, const Factors& factors, bool all) override {
+  void prepare(const Element& element, const ScaleFactors& factors, bool all) override {
     element_ = &element;
     cold_->prepare(element, factors, all);
   }
@@ -50,16 +50,16 @@ class Heated final : public StrainTerm,
     cold_->add_tangent(e, shrunk(x), scaled(w), tangent);
   }
 
-  void add_forces(const Batch& x, Lanes* force) const override {
-    Lanes unknowns[kMaxLocal], rates[kMaxLocal], f[kMaxLocal];
+  void add_forces(const Batch& x, Pack* force) const override {
+    Pack unknowns[kMaxLocal], rates[kMaxLocal], f[kMaxLocal];
     const int n = x.n_local();
     const Batch cold = shrunk(x, unknowns, rates);
-    std::fill(f, f + n, Lanes{});
+    std::fill(f, f + n, Pack{});
     cold_.add_forces(cold, f);
     for (int k = 0; k < n; ++k) force[k] += force_scale_ * f[k];
   }
-  void add_tangents(const Batch& x, const Weights& w, Lanes* tangent) const override {
-    Lanes unknowns[kMaxLocal], rates[kMaxLocal];
+  void add_tangents(const Batch& x, const Weights& w, Pack* tangent) const override {
+    Pack unknowns[kMaxLocal], rates[kMaxLocal];
     cold_.add_tangents(shrunk(x, unknowns, rates), scaled(w), tangent);
   }
 
@@ -73,17 +73,17 @@ class Heated final : public StrainTerm,
     cold_.with_mean_force().add_mean_tangent(e, shrunk(x), scaled(w), tangent);
   }
 
-  void add_free_force(int e, const Local& x, FreeForce& force) const override {
-    FreeForce f = FreeForce::Zero(force.size());
-    cold_.with_free_lines().add_free_force(e, shrunk(x), f);
+  void add_eulerian_force(int e, const Local& x, EulerianForce& force) const override {
+    EulerianForce f = EulerianForce::Zero(force.size());
+    cold_.with_eulerian_lines().add_eulerian_force(e, shrunk(x), f);
     const Eigen::Index n = x.q.size();
     force.head(n) += force_scale_ * f.head(n);
     force.tail(force.size() - n) += energy_scale_ * f.tail(force.size() - n);
   }
-  void add_free_tangent(int e, const Local& x, const Weights& w,
-                        FreeTangent& tangent) const override {
-    FreeTangent k = FreeTangent::Zero(tangent.rows(), tangent.cols());
-    cold_.with_free_lines().add_free_tangent(e, shrunk(x), w, k);
+  void add_eulerian_tangent(int e, const Local& x, const Weights& w,
+                            EulerianTangent& tangent) const override {
+    EulerianTangent k = EulerianTangent::Zero(tangent.rows(), tangent.cols());
+    cold_.with_eulerian_lines().add_eulerian_tangent(e, shrunk(x), w, k);
     const Eigen::Index n = x.q.size(), m = tangent.rows() - n;
     tangent.topLeftCorner(n, n) += tangent_scale_ * k.topLeftCorner(n, n);
     tangent.topRightCorner(n, m) += force_scale_ * k.topRightCorner(n, m);
@@ -126,7 +126,7 @@ class Heated final : public StrainTerm,
     rate_ = factor_ * rise_.rate;
     if (!(s_ > 0) || !std::isfinite(s_) || !std::isfinite(rate_))
       throw Error::numerical(
-          formatted("heat: 1 + alpha dT = %.6g at t = %.6g s, must be positive", s_, t_));
+          formatted("heat: 1 + alpha dT = %.6g at t = %.6g s; it must be positive", s_, t_));
     energy_scale_ = std::pow(s_, power_);
     force_scale_ = energy_scale_ / s_;
     tangent_scale_ = force_scale_ / s_;
@@ -149,7 +149,7 @@ class Heated final : public StrainTerm,
   }
   /// Returns the batch of the cold body; its values are stored in `unknowns` and `rates` (kMaxLocal
   /// each).
-  Batch shrunk(const Batch& x, Lanes* unknowns, Lanes* rates) const {
+  Batch shrunk(const Batch& x, Pack* unknowns, Pack* rates) const {
     const double scale = 1 / s_, growth = rate_ / s_;
     for (int k = 0; k < x.n_local(); ++k) {
       unknowns[k] = scale * x.q[k];
@@ -169,8 +169,8 @@ class Heated final : public StrainTerm,
       force.setZero(x.q.rows(), x.q.cols());
       add_force(e, x, force);
     } else {
-      FreeForce all = FreeForce::Zero(x.q.size() + 4);
-      add_free_force(e, x, all);
+      EulerianForce all = EulerianForce::Zero(x.q.size() + 4);
+      add_eulerian_force(e, x, all);
       force = Eigen::Map<const LocalRows>(all.data(), x.q.rows(), x.q.cols());
     }
     const auto vectors = element_->vectors(e);
@@ -200,8 +200,9 @@ class Heated final : public StrainTerm,
 
 std::unique_ptr<Term> make_heated(BodyTerm cold, const Heat& heat) {
   if (!cold.strain)
-    throw Error::input("heat acts on elastic terms, the term '" + cold->name() + "' is none");
-  if (!heat.temperature) throw Error::input("heat without a temperature");
+    throw Error::input("heat acts on elastic terms, but the term '" + cold->name() +
+                       "' is not elastic");
+  if (!heat.temperature) throw Error::input("heat: the temperature is missing");
   if (!std::isfinite(heat.expansion))
     throw Error::input("the coefficient of thermal expansion is not a finite number");
   return std::make_unique<Heated>(std::move(cold), heat);
@@ -210,10 +211,10 @@ std::unique_ptr<Term> make_heated(BodyTerm cold, const Heat& heat) {
 void heat(Body& body, const Heat& heat) {
   const std::string who = "body '" + body.name + "': ";
   if (body.element->is_rigid()) throw Error::input(who + "a rigid body cannot be heated");
-  if (body.heat) throw Error::input(who + "is heated already");
+  if (body.heat) throw Error::input(who + "it is heated already");
   const auto is_strained = [](const BodyTerm& t) { return t.strain != nullptr; };
   if (std::none_of(body.terms.begin(), body.terms.end(), is_strained))
-    throw Error::input(who + "has no elastic term that heat could act on");
+    throw Error::input(who + "it has no elastic term on which heat can act");
   for (BodyTerm& term : body.terms)
     if (is_strained(term)) term = make_heated(std::move(term), heat);
   body.heat = heat;

@@ -21,14 +21,14 @@ const std::map<std::string, Profile>& table() {
 }
 
 void check(const TemperatureRise& r) {
-  if (!std::isfinite(r.rise) || !std::isfinite(r.start) || !std::isfinite(r.settle))
-    throw Error::input("temperature: rise, start and settle are finite numbers");
-  if (r.profile != Profile::step && !(r.settle > 0))
-    throw Error::input("temperature: the time of settling is positive");
+  if (!std::isfinite(r.rise) || !std::isfinite(r.start) || !std::isfinite(r.duration))
+    throw Error::input("temperature: rise, start and duration must be finite numbers");
+  if (r.profile != Profile::step && !(r.duration > 0))
+    throw Error::input("temperature: the settling time must be positive");
 }
 
 /// Returns the end of the rise; all callers get the identical double.
-double end_of(const TemperatureRise& r) { return r.start + r.settle; }
+double end_of(const TemperatureRise& r) { return r.start + r.duration; }
 
 /// Returns s(u) and its derivatives with respect to u in [0, 1].
 Motion shape(Profile profile, double u) {
@@ -56,8 +56,8 @@ Motion shape(Profile profile, double u) {
 Profile profile_of(const std::string& name) {
   const auto row = table().find(name);
   if (row != table().end()) return row->second;
-  throw Error::input("temperature profile '" + name +
-                     "' is unknown; known are: " + joined(std::views::keys(table())));
+  throw Error::input("temperature profile '" + name + "' is unknown; the available profiles are: " +
+                     joined(std::views::keys(table())));
 }
 
 std::function<Motion(double t)> make_temperature(const TemperatureRise& rise) {
@@ -66,13 +66,13 @@ std::function<Motion(double t)> make_temperature(const TemperatureRise& rise) {
     if (r.profile == Profile::step) return {t < r.start ? 0 : r.rise, 0, 0};
     if (t < r.start) return {};
     if (t >= end_of(r)) return {r.rise, 0, 0};
-    const Motion s = shape(r.profile, std::min((t - r.start) / r.settle, 1.0));
-    return {r.rise * s.value, r.rise * s.rate / r.settle,
-            r.rise * s.acceleration / (r.settle * r.settle)};
+    const Motion s = shape(r.profile, std::min((t - r.start) / r.duration, 1.0));
+    return {r.rise * s.value, r.rise * s.rate / r.duration,
+            r.rise * s.acceleration / (r.duration * r.duration)};
   };
 }
 
-std::vector<double> kinks(const TemperatureRise& rise) {
+std::vector<double> discontinuities(const TemperatureRise& rise) {
   check(rise);
   switch (rise.profile) {
     case Profile::quartic:  // its acceleration ends at 0

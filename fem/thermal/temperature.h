@@ -9,7 +9,7 @@
 namespace flexmorph::fem {
 
 /// Profile of a temperature that rises from 0 to its final value between `start` and `start` +
-/// `settle`, u = (t - start)/settle in [0, 1]:
+/// `duration`, u = (t - start)/duration in [0, 1]:
 ///
 ///   quartic   6u² - 8u³ + 3u⁴          agrees with the description of Fig. 4 in T
 ///   cosine    (1 - cos πu)/2
@@ -24,7 +24,7 @@ struct TemperatureRise {
   Profile profile = Profile::quartic;  ///< Shape of the rise in time.
   double rise = 0;                     ///< Final ΔT [K].
   double start = 0;                    ///< Time at which the rise begins [s].
-  double settle = 1;                   ///< Duration of the rise [s].
+  double duration = 1;                 ///< Duration of the rise [s].
 };
 
 /// Returns the profile of a name: "quartic", "cosine", "quintic", "linear", "step".
@@ -33,12 +33,12 @@ Profile profile_of(const std::string& name);
 
 /// Returns the function of ΔT, its rate and its acceleration [K], [K/s], [K/s²]: 0 before `start`,
 /// constant after the rise. Where they jump, it gives the values after the jump.
-/// @throws Error (input) for numbers that are not finite or settle <= 0.
+/// @throws Error (input) for numbers that are not finite or duration <= 0.
 std::function<Motion(double t)> make_temperature(const TemperatureRise& rise);
 
 /// Returns the times at which ΔT, its rate or its acceleration jumps [s], see
-/// MotionSettings::kinks.
-std::vector<double> kinks(const TemperatureRise& rise);
+/// MotionSettings::discontinuities.
+std::vector<double> discontinuities(const TemperatureRise& rise);
 
 /// Returns true if the acceleration of ΔT is ever other than 0. Otherwise there is no thermal
 /// inertia force, because jumps of the temperature and of its rate cause none.

@@ -8,8 +8,9 @@ constexpr int kMassDegree = 6;
 }  // namespace
 
 ThermalMatrices thermal_matrices(const Element& element, double area_density,
-                                 const Factors& factors) {
-  if (element.is_rigid()) throw Error::input("thermal displacement: a rigid body does not grow");
+                                 const ScaleFactors& factors) {
+  if (element.is_rigid())
+    throw Error::input("thermal displacement: a rigid body has no thermal expansion");
   if (element.n_scalars() > 0)
     throw Error::input("thermal displacement: the body has free material lines");
   const int n = element.n_vectors();
@@ -22,7 +23,7 @@ ThermalMatrices thermal_matrices(const Element& element, double area_density,
   for (int e = 0; e < element.n_elements(); ++e) {
     if (element.moving(e))
       throw Error::input("thermal displacement: the body has material lines that move");
-    element.tabulate(e, kMassDegree, Tabulate::position, factors, FactorKind::mass, t);
+    element.tabulate(e, kMassDegree, Tabulate::position, factors, ScaleFactorKind::mass, t);
     const auto vectors = element.vectors(e);
     const MatrixXd weighted = (area_density * t.weight).asDiagonal() * t.N;
     const MatrixXd M = weighted.transpose() * t.N;

@@ -24,6 +24,6 @@ struct ThermalMatrices {
 /// @param area_density  ρb, density times width or thickness [kg/m²]
 /// @throws Error (input) for a rigid body and for a mesh with lines that move.
 ThermalMatrices thermal_matrices(const Element& element, double area_density,
-                                 const Factors& factors = {});
+                                 const ScaleFactors& factors = {});
 
 }  // namespace flexmorph::fem

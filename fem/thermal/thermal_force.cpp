@@ -11,7 +11,7 @@ ThermalForce::ThermalForce(std::string name, std::string body, Heat heat, double
       body_(std::move(body)),
       heat_(std::move(heat)),
       area_density_(area_density) {
-  if (!heat_.temperature) throw Error::input("'" + name_ + "': heat without a temperature");
+  if (!heat_.temperature) throw Error::input("'" + name_ + "': the temperature is missing");
   if (!(area_density > 0) || !std::isfinite(area_density))
     throw Error::input("'" + name_ + "': a thermal force needs a body with mass");
 }
@@ -19,13 +19,14 @@ ThermalForce::ThermalForce(std::string name, std::string body, Heat heat, double
 void ThermalForce::bind(std::span<const BodyView> bodies) {
   const BodyView& body = find_body(bodies, name_, body_);
   if (body.element->dim() != 2)
-    throw Error::input("'" + name_ + "': the thermal force is known in the plane only, body '" +
-                       body_ + "' is in space");
+    throw Error::input("'" + name_ +
+                       "': the thermal force is only available in the plane, but body '" + body_ +
+                       "' is three-dimensional");
   element_ = body.element;
   first_dof_ = body.first_dof;
   try {
     const ThermalMatrices m =
-        thermal_matrices(*element_, area_density_, body.factors ? *body.factors : Factors{});
+        thermal_matrices(*element_, area_density_, body.factors ? *body.factors : ScaleFactors{});
     B_ = m.M * m.from_centre();
   } catch (const Error& error) {
     throw Error(error.kind(), "'" + name_ + "', body '" + body_ + "': " + error.what());

@@ -2,8 +2,8 @@
 
 #include <functional>
 
+#include "fem/force_element.h"
 #include "fem/heat.h"
-#include "fem/link.h"
 
 namespace flexmorph::fem {
 
@@ -25,7 +25,7 @@ namespace flexmorph::fem {
 /// added.
 ///
 /// The mass is that of the body as it is designed. No load factor scales the force.
-class ThermalForce final : public Link, public MeanForceLink {
+class ThermalForce final : public ForceElement, public MeanForceElement {
  public:
   /// Creates the force of one body.
   /// @param area_density  density times width or thickness [kg/m²]
@@ -34,7 +34,9 @@ class ThermalForce final : public Link, public MeanForceLink {
   ///     defined.
   ThermalForce(std::string name, std::string body, Heat heat, double area_density);
 
-  std::unique_ptr<Link> clone() const override { return std::make_unique<ThermalForce>(*this); }
+  std::unique_ptr<ForceElement> clone() const override {
+    return std::make_unique<ThermalForce>(*this);
+  }
   /// Returns the rotation θ of the body [rad], in (-π, π].
   double rotation(const VectorXd& q) const;
 

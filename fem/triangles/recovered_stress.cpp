@@ -11,7 +11,7 @@ namespace flexmorph::fem {
 namespace {
 
 // Smallest number of triangles in a patch: nine points for six coefficients.
-constexpr std::size_t kFewest = 3;
+constexpr std::size_t kMinTriangles = 3;
 
 /// Returns the monomials of a quadratic polynomial about a corner.
 Eigen::Matrix<double, 6, 1> monomials(const Vec2& p) {
@@ -54,7 +54,7 @@ std::vector<int> RecoveredStress::patch(int corner, int clamp) const {
   add_around(corner);
   // Adds neighbours. The patch never reaches another connected region, because only corners of its
   // triangles are visited.
-  for (int ring = 0; ring < 2 && !out.empty() && out.size() < kFewest; ++ring) {
+  for (int ring = 0; ring < 2 && !out.empty() && out.size() < kMinTriangles; ++ring) {
     const std::vector<int> inner = out;
     for (const int t : inner)
       for (std::size_t k = 0; k < 3; ++k)
@@ -111,7 +111,7 @@ void RecoveredStress::recover_at(int corner, std::span<const int> triangles, Eig
     const T6 element(mesh.corners(t));
     for (std::size_t p = 0; p < 3; ++p) {
       const auto row = static_cast<Eigen::Index>(3 * k + p);
-      basis.row(row) = monomials((element.place(kThreePoints[p]) - at) / size).transpose();
+      basis.row(row) = monomials((element.position(kThreePoints[p]) - at) / size).transpose();
       samples.col(row) = stresses.block(
           3 * first, 3 * static_cast<Eigen::Index>(t) + static_cast<Eigen::Index>(p), 3 * count, 1);
     }

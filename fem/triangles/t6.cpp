@@ -33,7 +33,7 @@ T6::T6(const std::array<Vec2, 3>& corners) : corners_(corners) {
   slopes_ /= twice;
 }
 
-Vec2 T6::place(const AreaPoint& at) const {
+Vec2 T6::position(const AreaPoint& at) const {
   return at[0] * corners_[0] + at[1] * corners_[1] + at[2] * corners_[2];
 }
 

@@ -44,7 +44,7 @@ class T6 {
   /// Returns the area of the triangle [m²].
   double area() const { return area_; }
   /// Returns the position of a point [m].
-  Vec2 place(const AreaPoint& at) const;
+  Vec2 position(const AreaPoint& at) const;
   /// Returns the matrix B of ε = B u (Voigt: ε₁₁, ε₂₂, 2ε₁₂), x and y of a node next to each other.
   Eigen::Matrix<double, 3, 12> strains(const AreaPoint& at) const;
   /// Returns the stiffness of the triangle [N/m].

@@ -114,7 +114,7 @@ void TrianglePlate::Impl::number() {
       if (used[at] && !held[2 * at + c]) rows[2 * at + c] = next++;
     for (int k = first_clamps[at]; k < n_clamps(); ++k) active[static_cast<std::size_t>(k)] = next;
   }
-  if (next == 0) throw Error::input("triangles: no displacement is free");
+  if (next == 0) throw Error::input("triangles: all displacements are fixed");
   find_pattern(graph, order);
 }
 
@@ -201,8 +201,9 @@ void TrianglePlate::factorize() {
   if (column < 0) return;
   const auto at = std::find(impl_->rows.begin(), impl_->rows.end(), column);
   const Vec2& p = impl_->mesh.point(static_cast<int>((at - impl_->rows.begin()) / 2));
-  throw Error::numerical("triangles: the part is not held at (" + std::to_string(p.x()) + ", " +
-                         std::to_string(p.y()) + "): its stiffness is not positive definite");
+  throw Error::numerical("triangles: the part is not sufficiently supported at (" +
+                         std::to_string(p.x()) + ", " + std::to_string(p.y()) +
+                         ") m: its stiffness is not positive definite");
 }
 
 void TrianglePlate::solve(MatrixXd& loads, std::span<const int> clamps) const {

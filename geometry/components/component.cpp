@@ -16,13 +16,13 @@ namespace flexmorph {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Placement = CGAL::Aff_transformation_2<Kernel>;
+using BodyPoses = CGAL::Aff_transformation_2<Kernel>;
 
 /// Returns the transformation from the component's frame to the plane: a rotation by θ, then a
 /// translation by (X0, Y0).
-Placement placement(const Component& c) {
-  const Placement turn(CGAL::ROTATION, std::sin(c.angle), std::cos(c.angle));
-  const Placement move(CGAL::TRANSLATION, Kernel::Vector_2(c.center.x(), c.center.y()));
+BodyPoses body_poses(const Component& c) {
+  const BodyPoses turn(CGAL::ROTATION, std::sin(c.angle), std::cos(c.angle));
+  const BodyPoses move(CGAL::TRANSLATION, Kernel::Vector_2(c.center.x(), c.center.y()));
   return move * turn;
 }
 
@@ -61,10 +61,10 @@ Box bounding_box(const Component& c, double min_half_thickness, double margin) {
   assert(c.half_length > 0 && min_half_thickness > 0);
   const double L = c.half_length;
   const double g = ComponentFrame(c, min_half_thickness).largest_half_thickness();
-  const Placement place = placement(c);
+  const BodyPoses location = body_poses(c);
   CGAL::Bbox_2 box;
   for (const auto& [x, y] : {std::pair{-L, -g}, {L, -g}, {L, g}, {-L, g}}) {
-    box += place.transform(Kernel::Point_2(x, y)).bbox();
+    box += location.transform(Kernel::Point_2(x, y)).bbox();
   }
   return {{box.xmin() - margin, box.ymin() - margin}, {box.xmax() + margin, box.ymax() + margin}};
 }
@@ -72,17 +72,18 @@ Box bounding_box(const Component& c, double min_half_thickness, double margin) {
 std::vector<Vec2> outline(const Component& c, double min_half_thickness, int segments) {
   assert(c.half_length > 0 && min_half_thickness > 0);
   if (segments < 3) {
-    throw Error::input("outline: " + std::to_string(segments) + " segments: at least 3 are needed");
+    throw Error::input("outline: " + std::to_string(segments) +
+                       " segments are given; at least 3 are needed");
   }
   const ComponentFrame frame(c, min_half_thickness);
-  const Placement place = placement(c);
+  const BodyPoses location = body_poses(c);
   std::vector<Vec2> vertices;
   vertices.reserve(static_cast<std::size_t>(segments));
   for (int k = 0; k < segments; ++k) {
     const Vec2 unit = unit_superellipse(2 * std::numbers::pi * k / segments);
     const double x = c.half_length * unit.x();
     const Kernel::Point_2 p =
-        place.transform(Kernel::Point_2(x, frame.half_thickness(x) * unit.y()));
+        location.transform(Kernel::Point_2(x, frame.half_thickness(x) * unit.y()));
     vertices.emplace_back(p.x(), p.y());
   }
   return vertices;

@@ -27,7 +27,7 @@ using PolygonWithHoles = CGAL::Polygon_with_holes_2<Exact>;
 
 // The interval arithmetic of CGAL overflows if a product of four coordinates does, and then its
 // sweep crashes.
-constexpr double kFarthest = 1e60;
+constexpr double kMaxCoordinate = 1e60;
 
 /// Returns a counterclockwise polygon; `number` is its index in the list, for the message.
 Polygon exact_polygon(const std::vector<Vec2>& vertices, std::size_t number) {
@@ -37,11 +37,12 @@ Polygon exact_polygon(const std::vector<Vec2>& vertices, std::size_t number) {
   };
   Polygon polygon;
   for (const Vec2& v : vertices) {
-    if (!v.allFinite()) refuse("is not finite");
-    if (!(v.cwiseAbs().maxCoeff() < kFarthest)) refuse("reaches beyond 1e60");
+    if (!v.allFinite()) refuse("has a coordinate that is not finite");
+    if (!(v.cwiseAbs().maxCoeff() < kMaxCoordinate)) refuse("has a coordinate of 1e60 or more");
     polygon.push_back(Exact::Point_2(v.x(), v.y()));
   }
-  if (polygon.size() < 3 || !polygon.is_simple()) refuse("is not simple");
+  if (polygon.size() < 3 || !polygon.is_simple())
+    refuse("has fewer than 3 vertices, or crosses or touches itself");
   if (polygon.orientation() == CGAL::COLLINEAR) refuse("has no area");
   if (polygon.orientation() == CGAL::CLOCKWISE) polygon.reverse_orientation();
   return polygon;
@@ -77,7 +78,7 @@ double signed_area(const std::vector<Vec2>& ring) {
 
 std::vector<Region> unite(std::span<const std::vector<Vec2>> polygons, const Box& clip) {
   if (!((clip.upper - clip.lower).minCoeff() > 0)) {
-    throw Error::input("unite: the box to clip to is empty");
+    throw Error::input("unite: the box for clipping is empty");
   }
   return unite(polygons, {corners_of(clip), {}}, {});
 }
@@ -117,7 +118,7 @@ std::vector<std::vector<Vec2>> rings_of(const Region& region) {
 }
 
 Region region_of(std::vector<std::vector<Vec2>> rings) {
-  if (rings.empty()) throw Error::input("an outline has one ring or more");
+  if (rings.empty()) throw Error::input("an outline must have at least one ring");
   const auto larger = [](const auto& a, const auto& b) {
     return std::abs(signed_area(a)) > std::abs(signed_area(b));
   };
@@ -148,8 +149,8 @@ Region region_of(std::vector<std::vector<Vec2>> rings) {
                      std::abs(area(united) - left) <= 1e-9 * area({out.outer, {}});
   if (!apart)
     throw Error::input(
-        "an outline is one outer ring with holes in it that keep apart; these rings "
-        "cross, touch or lie elsewhere");
+        "an outline is one outer ring with separate holes inside it; these rings cross or touch, "
+        "or a hole lies outside");
   return out;
 }
 
@@ -169,12 +170,12 @@ Box bounds_of(std::span<const Vec2> points) {
 
 std::vector<Vec2> circle_within(const Vec2& center, double radius, double tolerance) {
   if (!(radius > 0 && tolerance > 0))
-    throw Error::input("circle: radius and tolerance are positive");
-  constexpr double kFewest = 8, kMost = 1 << 16;
+    throw Error::input("circle: the radius and the tolerance must be positive");
+  constexpr double kMinPoints = 8, kMaxPoints = 1 << 16;
   // The middle of a side lies r (1 - cos(π/n)) = 2 r sin²(π/2n) inside the circle.
   const double half = std::asin(std::min(1.0, std::sqrt(0.5 * tolerance / radius)));
-  const int n =
-      static_cast<int>(std::clamp(std::ceil(0.5 * std::numbers::pi / half), kFewest, kMost));
+  const int n = static_cast<int>(
+      std::clamp(std::ceil(0.5 * std::numbers::pi / half), kMinPoints, kMaxPoints));
   std::vector<Vec2> ring;
   for (int k = 0; k < n; ++k) {
     const double angle = 2 * std::numbers::pi * k / n;
@@ -184,10 +185,10 @@ std::vector<Vec2> circle_within(const Vec2& center, double radius, double tolera
 }
 
 std::vector<Vec2> outline_within(const Component& c, double min_half_thickness, double tolerance) {
-  if (!(tolerance > 0)) throw Error::input("outline: a tolerance is positive");
-  constexpr int kFewest = 32, kMost = 1 << 16;
-  std::vector<Vec2> coarse = outline(c, min_half_thickness, kFewest);
-  for (int n = kFewest; n < kMost; n *= 2) {
+  if (!(tolerance > 0)) throw Error::input("outline: the tolerance must be positive");
+  constexpr int kMinPoints = 32, kMaxPoints = 1 << 16;
+  std::vector<Vec2> coarse = outline(c, min_half_thickness, kMinPoints);
+  for (int n = kMinPoints; n < kMaxPoints; n *= 2) {
     std::vector<Vec2> fine = outline(c, min_half_thickness, 2 * n);
     // The distance of the vertices of the finer polygon from the sides estimates the error of the
     // coarse one.

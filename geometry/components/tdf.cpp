@@ -98,7 +98,7 @@ void UnionTdf::evaluate(std::span<const Component> components) {
   evaluated_ = true;
 }
 
-void UnionTdf::Scratch::make_room(std::size_t n) {
+void UnionTdf::Scratch::reserve_memory(std::size_t n) {
   if (x.size() >= n) return;
   for (std::vector<double>* v : {&x, &y, &seed}) v->resize(2 * n);
   node.resize(2 * n);
@@ -140,7 +140,7 @@ void UnionTdf::add_runs(const ComponentFrame& frame) {
     const int count = rows.end - rows.first;
     if (count == 0) continue;
     runs_.push_back({i, rows.first, count});
-    scratch_.make_room(visits + static_cast<std::size_t>(count));
+    scratch_.reserve_memory(visits + static_cast<std::size_t>(count));
     double* x = scratch_.x.data() + visits;
     double* y = scratch_.y.data() + visits;
     for (int k = 0; k < count; ++k) {
@@ -219,7 +219,8 @@ void UnionTdf::pull_back(const VectorXd& df_dh, const VectorXd& df_deroded, Vect
     sum(frame, count, scratch_.x.data(), scratch_.y.data(), scratch_.seed.data(),
         df_dp.data() + kParameters * static_cast<Eigen::Index>(c));
   }
-  if (!df_dp.allFinite()) throw Error::numerical("tdf: the derivative of f by H is not finite");
+  if (!df_dp.allFinite())
+    throw Error::numerical("tdf: the derivative of f with respect to H is not finite");
 }
 
 void UnionTdf::pull_back(const MatrixXd& df_dh, const MatrixXd& df_deroded, MatrixXd& df_dp) const {
@@ -250,14 +251,15 @@ void UnionTdf::pull_back(const MatrixXd& df_dh, const MatrixXd& df_deroded, Matr
     df_dp.middleCols(kParameters * static_cast<Eigen::Index>(c), kParameters).noalias() =
         s.seeds.leftCols(count) * Eigen::Map<const MatrixXd>(s.chain.data(), count, kParameters);
   }
-  if (!df_dp.allFinite()) throw Error::numerical("tdf: a derivative by H is not finite");
+  if (!df_dp.allFinite())
+    throw Error::numerical("tdf: a derivative with respect to H is not finite");
 }
 
 /// Appends the local coordinates, weights dφ/dφ_i and indices of the nodes of a run at which
 /// density() or eroded() changes with φ.
 int UnionTdf::add_points(const ComponentFrame& frame, const Run& run, const double* visit,
                          int count) const {
-  scratch_.make_room(static_cast<std::size_t>(count + run.count));
+  scratch_.reserve_memory(static_cast<std::size_t>(count + run.count));
   const double X = grid_.x0 + run.column * grid_.dx();
   const int first = grid_.node(run.column, run.row);
   for (int k = 0; k < run.count; ++k) {
@@ -311,7 +313,7 @@ std::vector<double> UnionTdf::influence(std::span<const signed char> counts) con
 /// changes with φ.
 int UnionTdf::add_seeds(const ComponentFrame& frame, const Run& run, const double* visit,
                         const VectorXd& df_dh, const VectorXd& df_deroded, int count) const {
-  scratch_.make_room(static_cast<std::size_t>(count + run.count));
+  scratch_.reserve_memory(static_cast<std::size_t>(count + run.count));
   const double X = grid_.x0 + run.column * grid_.dx();
   const int first = grid_.node(run.column, run.row);
   for (int k = 0; k < run.count; ++k) {

@@ -112,7 +112,7 @@ class UnionTdf {
   void pull_back(const VectorXd& df_dh, VectorXd& df_dp) const { pull_back(df_dh, zero_, df_dp); }
 
   /// Derivatives of a function f by the nodal values of density() and eroded().
-  struct NodeSlopes {
+  struct NodeGradients {
     /// First derivatives by density() and eroded(), second derivative by eroded() (n_nodes each).
     VectorXd df_dh, df_deroded, d2f_deroded2;
   };
@@ -126,13 +126,13 @@ class UnionTdf {
   /// because a plain maximum has no second derivatives.
   /// @param slopes  φ_p at the nodes where H or E changes (n_nodes x 7 N), see slopes()
   /// @throws Error (numerical) when the result is not finite.
-  MatrixXd curvature(const NodeSlopes& f, const Eigen::SparseMatrix<double>& slopes) const;
+  MatrixXd curvature(const NodeGradients& f, const Eigen::SparseMatrix<double>& slopes) const;
   /// Returns the derivatives φ_p of φ by the parameters (n_nodes x 7 N) at the nodes where
   /// density() or eroded() changes with φ; all other rows are empty. The function is for `distance`
   /// only.
   Eigen::SparseMatrix<double> slopes() const;
   /// Returns the derivative d(eroded)/dφ (n_nodes).
-  VectorXd eroded_slopes() const;
+  VectorXd eroded_gradient() const;
 
  private:
   /// Neighbouring nodes of one grid column in the range of one component.
@@ -144,7 +144,7 @@ class UnionTdf {
     std::vector<double> x, y, seed;
     std::vector<int> node;
     MatrixXd node_seeds, seeds, chain;  // matrices for many functions
-    void make_room(std::size_t n);
+    void reserve_memory(std::size_t n);
   };
   void find_reach(std::span<const Component> components);
   void add_runs(const ComponentFrame& frame);

@@ -7,7 +7,7 @@ namespace flexmorph {
 
 using namespace component_tdf_kernels;
 
-VectorXd UnionTdf::eroded_slopes() const {
+VectorXd UnionTdf::eroded_gradient() const {
   VectorXd out(phi_.size());
   for (Eigen::Index n = 0; n < out.size(); ++n)
     out[n] = heaviside(phi_[n] - settings_.erosion, settings_).slope;
@@ -43,7 +43,8 @@ Eigen::SparseMatrix<double> UnionTdf::slopes() const {
   return out;
 }
 
-MatrixXd UnionTdf::curvature(const NodeSlopes& f, const Eigen::SparseMatrix<double>& slopes) const {
+MatrixXd UnionTdf::curvature(const NodeGradients& f,
+                             const Eigen::SparseMatrix<double>& slopes) const {
   assert(evaluated_ && settings_.kind == TdfSettings::Kind::distance);
   constexpr int kParameters = Component::kParameters;
   const double lambda = settings_.sharpness;

@@ -75,8 +75,8 @@ class Fitter {
   /// Returns the farthest point to which a pair of arcs fits, by doubling and bisecting the step.
   std::size_t farthest(std::size_t from) const {
     // largest number of points, because distances to all of them are computed
-    constexpr std::size_t kLongest = 256;
-    const std::size_t end = std::min(points_.size() - 1, from + kLongest);
+    constexpr std::size_t kMaxPointsOfArc = 256;
+    const std::size_t end = std::min(points_.size() - 1, from + kMaxPointsOfArc);
     std::size_t good = from + 1, bad = end + 1;
     for (std::size_t step = 2; from + step < bad; step *= 2) {
       if (fit(from, from + step))

@@ -18,10 +18,10 @@ using geos::ring_points;
 using geos::Shape;
 using geos::shape_of;
 
-/// Tolerances as fractions of the radius of the fillets: a vertex of the result within kSame of a
-/// given vertex is replaced by it, and a vertex within kStraight of the line through its neighbours
-/// is removed.
-constexpr double kSame = 2e-3, kStraight = 1e-6;
+/// Tolerances as fractions of the radius of the fillets: a vertex of the result within
+/// kSameDirection of a given vertex is replaced by it, and a vertex within kStraight of the line
+/// through its neighbours is removed.
+constexpr double kSameDirection = 2e-3, kStraight = 1e-6;
 /// Width of the lattice on which vertices of results lie, as a fraction of the radius.
 constexpr double kLattice = 1e-9;
 /// Vertices within this distance of the border of the domain are on it, as a fraction of the
@@ -72,12 +72,12 @@ class Filling {
     constexpr double kReach = 1e-3, kTiny = 1e-4;  // fractions of the radius, and of its square
     std::vector<Shape> out;
     const Shape left = closed.without(filled).common(domain_);
-    for (int k = 0; k < left.n_pieces(); ++k) {
+    for (int k = 0; k < left.n_connected_regions(); ++k) {
       Shape blade = left.piece(k);
       if (blade.area() < kTiny * radius_ * radius_) continue;
       const Shape reached = blade.grown(kReach * radius_, 4);
       const Shape contacts = reached.common(filled.near(reached));
-      if (contacts.n_pieces() > 1) out.push_back(blade.grown(thin_, sides_));
+      if (contacts.n_connected_regions() > 1) out.push_back(blade.grown(thin_, sides_));
     }
     return out;
   }
@@ -179,7 +179,7 @@ std::vector<Vec2> simplified_between(std::vector<Vec2> ring, const Border& borde
 std::vector<Vec2> cleaned(const std::vector<Vec2>& ring, const Vertices& vertices, double radius) {
   std::vector<Vec2> snapped;
   for (const Vec2& p : ring) {
-    const Vec2 at = vertices.near(p, kSame * radius);
+    const Vec2 at = vertices.near(p, kSameDirection * radius);
     if (snapped.empty() || at != snapped.back()) snapped.push_back(at);
   }
   while (snapped.size() > 1 && snapped.front() == snapped.back()) snapped.pop_back();

@@ -94,7 +94,7 @@ struct Contact {
 };
 
 /// Tells which locations count.
-using Counts = std::function<bool(const NarrowPlace&)>;
+using Counts = std::function<bool(const LengthScaleViolation&)>;
 
 template <class Traits>
 class MedialAxis {
@@ -112,10 +112,12 @@ class MedialAxis {
     }
   }
 
-  std::vector<NarrowPlace> places() {
+  std::vector<LengthScaleViolation> locations() {
     find();
     std::sort(found_.begin(), found_.end(),
-              [](const NarrowPlace& x, const NarrowPlace& y) { return x.width < y.width; });
+              [](const LengthScaleViolation& x, const LengthScaleViolation& y) {
+                return x.width < y.width;
+              });
     return std::move(found_);
   }
 
@@ -173,16 +175,16 @@ class MedialAxis {
     return cross(corner.before, corner.after) < 0;
   }
 
-  /// Adds vertices at which the width is 0: vertices that two outlines share, and very sharp
+  /// Adds vertices at which the width is 0: vertices that two outlines share, and very crisp
   /// corners.
   void corners() {
     for (const auto& [at, corner] : outlines_.corners()) {
       const Vec2 p(at.first, at.second);
       const double turn =
           std::atan2(cross(corner.before, corner.after), corner.before.dot(corner.after));
-      const bool sharp = corner.visits == 1 && std::numbers::pi - turn < kNearlyOpposite &&
+      const bool crisp = corner.visits == 1 && std::numbers::pi - turn < kNearlyOpposite &&
                          turn > 0 && !corner.border_before && !corner.border_after;
-      if (corner.visits > 1 || sharp) add({NarrowPlace::Kind::neck, true, 0, p, p, p});
+      if (corner.visits > 1 || crisp) add({LengthScaleViolation::Kind::neck, true, 0, p, p, p});
     }
   }
 
@@ -205,7 +207,8 @@ class MedialAxis {
     if (!(width < limit_) || width == 0) return;
     const Vec2 center = 0.5 * (a + b);
     if (!(width < bounds_[in_material(p, center)]) || !empty(center, 0.5 * width)) return;
-    report(NarrowPlace::Kind::neck, p, {NarrowPlace::Kind::neck, true, width, center, a, b});
+    report(LengthScaleViolation::Kind::neck, p,
+           {LengthScaleViolation::Kind::neck, true, width, center, a, b});
   }
 
   /// Returns the contacts on two parallel sides in the middle of their edge of the medial axis.
@@ -251,15 +254,16 @@ class MedialAxis {
                              opening(center, at[0], at[1])};
     const auto widest = static_cast<size_t>(std::max_element(angle, angle + 3) - angle);
     const size_t i = (widest + 1) % 3, j = (widest + 2) % 3;
-    NarrowPlace place{NarrowPlace::Kind::blob, true, 2 * low, center, at[i], at[j]};
+    LengthScaleViolation location{
+        LengthScaleViolation::Kind::blob, true, 2 * low, center, at[i], at[j]};
     // The contacts surround the center if the angles between them add up to the full circle.
     if (angle[0] + angle[1] + angle[2] > 2 * std::numbers::pi - kParallel &&
         angle[widest] < std::numbers::pi - kParallel)
-      report(place.kind, contacts[i], place);
+      report(location.kind, contacts[i], location);
     const bool border = contacts[i].border || contacts[j].border;
     if (angle[widest] < std::numbers::pi - (border ? kWedge : kNearlyOpposite)) return;
-    place.kind = NarrowPlace::Kind::bar;
-    report(place.kind, contacts[i], place);
+    location.kind = LengthScaleViolation::Kind::bar;
+    report(location.kind, contacts[i], location);
   }
 
   static double opening(const Vec2& center, const Vec2& a, const Vec2& b) {
@@ -267,18 +271,20 @@ class MedialAxis {
     return std::atan2(std::abs(cross(u, v)), u.dot(v));
   }
 
-  void report(NarrowPlace::Kind kind, const Contact& c, NarrowPlace place) {
-    place.solid = in_material(c, place.center);
-    if (!place.solid && (kind == NarrowPlace::Kind::bar || !outlines_.within(place.center))) return;
-    add(place);
+  void report(LengthScaleViolation::Kind kind, const Contact& c, LengthScaleViolation location) {
+    location.solid = in_material(c, location.center);
+    if (!location.solid &&
+        (kind == LengthScaleViolation::Kind::bar || !outlines_.within(location.center)))
+      return;
+    add(location);
   }
-  void add(const NarrowPlace& place) {
-    double& bound = bounds_[place.solid];
-    if (!(place.width < bound)) return;
+  void add(const LengthScaleViolation& location) {
+    double& bound = bounds_[location.solid];
+    if (!(location.width < bound)) return;
     if (counts_ == nullptr) {
-      found_.push_back(place);
-    } else if (!*counts_ || (*counts_)(place)) {
-      bound = place.width;
+      found_.push_back(location);
+    } else if (!*counts_ || (*counts_)(location)) {
+      bound = location.width;
     }
   }
 
@@ -289,22 +295,22 @@ class MedialAxis {
   G graph_;
   Vertex hint_;
   std::map<Key, Contact> sides_;
-  std::vector<NarrowPlace> found_;
+  std::vector<LengthScaleViolation> found_;
 };
 
 }  // namespace
 
-std::vector<NarrowPlace> narrow_places(std::span<const Region> regions, const Region& domain,
-                                       double limit) {
+std::vector<LengthScaleViolation> length_scale_violations(std::span<const Region> regions,
+                                                          const Region& domain, double limit) {
   const OutlineSides outlines(regions, domain);
   if (outlines.sides().empty()) return {};
   if (sides_cross(outlines.points(), outlines.sides()))
-    return MedialAxis<Crossing>(outlines, limit).places();
-  return MedialAxis<Apart>(outlines, limit).places();
+    return MedialAxis<Crossing>(outlines, limit).locations();
+  return MedialAxis<Apart>(outlines, limit).locations();
 }
 
 Features smallest_features(std::span<const Region> regions, const Region& domain,
-                           const std::function<bool(const NarrowPlace&)>& counts) {
+                           const std::function<bool(const LengthScaleViolation&)>& counts) {
   const OutlineSides outlines(regions, domain);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (outlines.sides().empty()) return {kInfinity, kInfinity};

@@ -12,7 +12,7 @@ namespace flexmorph {
 
 /// A location where material or void is narrow, given by an inscribed disc and two of its contact
 /// points with the outline. It violates the minimum length scale if its width is below the limit.
-struct NarrowPlace {
+struct LengthScaleViolation {
   /// Shape of the narrow location.
   enum class Kind {
     neck,  ///< The contacts are opposite: the width is a local minimum along the medial axis.
@@ -28,11 +28,11 @@ struct NarrowPlace {
 
 /// Minimum length scales of a design for its material and for the void between its parts [m]; 0
 /// means no limit.
-struct Widths {
+struct MinimumWidths {
   double solid = 0, gap = 0;  ///< Smallest width of the material and of the void [m].
 
   /// Returns the limit that applies to a narrow location [m].
-  double of(const NarrowPlace& place) const { return place.solid ? solid : gap; }
+  double of(const LengthScaleViolation& location) const { return location.solid ? solid : gap; }
   /// Returns the larger one of both limits [m].
   double largest() const { return solid > gap ? solid : gap; }
   /// Returns true if there is a limit.
@@ -57,8 +57,8 @@ struct Widths {
 /// @param regions  regions as unite() returns them
 /// @param domain   domain to which the regions are clipped
 /// @param limit    width below which a location is returned [m]
-std::vector<NarrowPlace> narrow_places(std::span<const Region> regions, const Region& domain,
-                                       double limit);
+std::vector<LengthScaleViolation> length_scale_violations(std::span<const Region> regions,
+                                                          const Region& domain, double limit);
 
 /// Smallest widths of material and void; infinite where there is none.
 struct Features {
@@ -68,6 +68,6 @@ struct Features {
 /// @param counts  returns true if a location counts; empty means that all count. It is called only
 ///         for locations that are narrower than the smallest width found before.
 Features smallest_features(std::span<const Region> regions, const Region& domain,
-                           const std::function<bool(const NarrowPlace&)>& counts = {});
+                           const std::function<bool(const LengthScaleViolation&)>& counts = {});
 
 }  // namespace flexmorph

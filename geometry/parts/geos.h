@@ -28,8 +28,8 @@ class Geos {
   /// Throws an error with the last message of GEOS.
   /// @throws Error (numerical) always.
   [[noreturn]] void fail() const {
-    throw Error::numerical("fillets of an outline: GEOS says: " +
-                           (said_.empty() ? "no result" : said_));
+    throw Error::numerical("fillets of an outline: GEOS failed: " +
+                           (said_.empty() ? "it returned no result" : said_));
   }
 
  private:
@@ -117,7 +117,7 @@ class Shape {
     return polygons_of(GEOSGeom_setPrecision_r(geos_->handle(), geometry_, width, 0));
   }
   /// Returns the number of polygons.
-  int n_pieces() const { return GEOSGetNumGeometries_r(geos_->handle(), geometry_); }
+  int n_connected_regions() const { return GEOSGetNumGeometries_r(geos_->handle(), geometry_); }
   /// Returns a copy of the polygon k.
   Shape piece(int k) const {
     return {*geos_,
@@ -138,7 +138,7 @@ class Shape {
   template <typename Grow>
   Shape ring_by_ring(double by, const Grow& grow) const {
     std::vector<Shape> pieces;
-    for (int k = 0; k < n_pieces(); ++k) {
+    for (int k = 0; k < n_connected_regions(); ++k) {
       const GEOSGeometry* polygon = GEOSGetGeometryN_r(geos_->handle(), geometry_, k);
       const Shape outer = filled_ring(GEOSGetExteriorRing_r(geos_->handle(), polygon));
       pieces.push_back({*geos_, grow(outer.geometry_, by)});
@@ -162,7 +162,7 @@ class Shape {
   Shape polygons_of(GEOSGeometry* result) const {
     const Shape all{*geos_, result};
     std::vector<GEOSGeometry*> polygons;
-    for (int k = 0; k < all.n_pieces(); ++k) {
+    for (int k = 0; k < all.n_connected_regions(); ++k) {
       const GEOSGeometry* piece = GEOSGetGeometryN_r(geos_->handle(), all.geometry_, k);
       if (GEOSGeomTypeId_r(geos_->handle(), piece) == GEOS_POLYGON)
         polygons.push_back(GEOSGeom_clone_r(geos_->handle(), piece));

@@ -7,7 +7,7 @@
 namespace flexmorph {
 namespace {
 
-constexpr double kTouches = 1e-9;
+constexpr double kContactDistance = 1e-9;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -29,13 +29,13 @@ class LineGaps {
   void find(const Segment& line) {
     for (const std::vector<Vec2>& ring : rings_) find(line, ring);
   }
-  std::vector<NarrowPlace> take() { return std::move(found_); }
+  std::vector<LengthScaleViolation> take() { return std::move(found_); }
 
  private:
   /// Finds runs of vertices that are equally far from the line and nearer than their neighbours.
   void find(const Segment& line, const std::vector<Vec2>& ring) {
     const size_t n = ring.size();
-    const double small = kTouches * (line.b - line.a).norm();
+    const double small = kContactDistance * (line.b - line.a).norm();
     std::vector<double> far;
     for (const Vec2& p : ring) far.push_back(distance(line, p));
     const auto at = [&](size_t k) { return far[k % n]; };
@@ -49,7 +49,7 @@ class LineGaps {
   }
 
   void add(const Segment& line, const Vec2& end) {
-    NarrowPlace gap;
+    LengthScaleViolation gap;
     gap.solid = false;
     gap.a = nearest_on(line, end);
     gap.b = end;
@@ -75,18 +75,20 @@ class LineGaps {
   std::span<const Region> regions_;
   double limit_;
   std::vector<std::vector<Vec2>> rings_;
-  std::vector<NarrowPlace> found_;
+  std::vector<LengthScaleViolation> found_;
 };
 
 }  // namespace
 
-std::vector<NarrowPlace> line_gaps(std::span<const Region> regions, std::span<const Segment> lines,
-                                   double limit) {
+std::vector<LengthScaleViolation> line_gaps(std::span<const Region> regions,
+                                            std::span<const Segment> lines, double limit) {
   LineGaps gaps(regions, limit);
   for (const Segment& line : lines) gaps.find(line);
-  std::vector<NarrowPlace> out = gaps.take();
+  std::vector<LengthScaleViolation> out = gaps.take();
   std::stable_sort(out.begin(), out.end(),
-                   [](const NarrowPlace& x, const NarrowPlace& y) { return x.width < y.width; });
+                   [](const LengthScaleViolation& x, const LengthScaleViolation& y) {
+                     return x.width < y.width;
+                   });
   return out;
 }
 

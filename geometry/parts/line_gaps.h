@@ -20,7 +20,7 @@ namespace flexmorph {
 /// @param regions  regions as unite() returns them
 /// @param lines    lines of which each has material on one side only
 /// @param limit    width below which a gap is returned [m]
-std::vector<NarrowPlace> line_gaps(std::span<const Region> regions, std::span<const Segment> lines,
-                                   double limit);
+std::vector<LengthScaleViolation> line_gaps(std::span<const Region> regions,
+                                            std::span<const Segment> lines, double limit);
 
 }  // namespace flexmorph

@@ -15,7 +15,7 @@ using Ring = std::vector<Vec2>;
 
 constexpr double kPi = std::numbers::pi;
 /// Distance below which points are merged: CAD kernels treat 1e-7 mm as zero [m].
-constexpr double kNear = 1e-9;
+constexpr double kSameDistance = 1e-9;
 /// Distance below which a circle passes through a point [m].
 constexpr double kThrough = 1e-10;
 /// Angles below this value are round-off [rad].
@@ -200,8 +200,9 @@ class RingCurves {
 Ring essential(const Ring& ring) {
   Ring apart;
   for (const Vec2& p : ring)
-    if (apart.empty() || (p - apart.back()).norm() > kNear) apart.push_back(p);
-  while (apart.size() > 1 && (apart.back() - apart.front()).norm() <= kNear) apart.pop_back();
+    if (apart.empty() || (p - apart.back()).norm() > kSameDistance) apart.push_back(p);
+  while (apart.size() > 1 && (apart.back() - apart.front()).norm() <= kSameDistance)
+    apart.pop_back();
   Ring out;
   const std::size_t n = apart.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -283,7 +284,7 @@ CurveRing lines_of(std::span<const Vec2> polygon) {
 }
 
 std::vector<CurvedRegion> curves_of(std::span<const Region> regions, double tolerance) {
-  if (!(tolerance > 0)) throw Error::input("curves: a tolerance is positive");
+  if (!(tolerance > 0)) throw Error::input("curves: the tolerance must be positive");
   std::vector<Region> clean;
   for (const Region& r : regions) {
     Region& out = clean.emplace_back();

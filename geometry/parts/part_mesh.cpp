@@ -32,7 +32,7 @@ using Data = CGAL::Triangulation_data_structure_2<Vertices, Faces>;
 // Edges of outlines that were rounded to doubles may cross by round-off, which this tag allows.
 using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Data, CGAL::Exact_predicates_tag>;
 
-Vec2 place_of(const Cdt::Vertex_handle& v) { return {v->point().x(), v->point().y()}; }
+Vec2 location_of(const Cdt::Vertex_handle& v) { return {v->point().x(), v->point().y()}; }
 
 /// The order in which triangles are refined: too large ones first, then those with a small angle.
 struct Criteria {
@@ -56,8 +56,8 @@ struct Criteria {
       return q.sine < kSine ? CGAL::Mesh_2::BAD : CGAL::Mesh_2::NOT_BAD;
     }
     CGAL::Mesh_2::Face_badness operator()(const Cdt::Face_handle& face, Quality& q) const {
-      const Vec2 a = place_of(face->vertex(0)), b = place_of(face->vertex(1)),
-                 c = place_of(face->vertex(2));
+      const Vec2 a = location_of(face->vertex(0)), b = location_of(face->vertex(1)),
+                 c = location_of(face->vertex(2));
       std::array<double, 3> sides = {(b - a).squaredNorm(), (c - b).squaredNorm(),
                                      (a - c).squaredNorm()};
       std::sort(sides.begin(), sides.end());
@@ -76,7 +76,7 @@ struct Criteria {
 };
 
 /// Limit on the number of steps, far above the number that any mesh that fits into memory needs.
-constexpr long kMostSteps = 1'000'000;
+constexpr long kMaxSteps = 1'000'000;
 
 using Mesher = CGAL::Delaunay_mesher_2<Cdt, Criteria>;
 
@@ -108,9 +108,9 @@ struct Piece {
       mesher->init();
     }
     for (long step = 0; !mesher->is_refinement_done(); ++step) {
-      if (step == kMostSteps)
-        throw Error::numerical("mesh of a part: its refinement does not end (" +
-                               std::to_string(step) + " points)");
+      if (step == kMaxSteps)
+        throw Error::numerical("mesh of a part: the refinement did not end after " +
+                               std::to_string(step) + " points");
       mesher->step_by_step_refine_mesh();
     }
   }
@@ -143,8 +143,8 @@ struct Piece {
     while (!waiting.empty()) {
       const Cdt::Face_handle face = waiting.back();
       waiting.pop_back();
-      const Vec2 a = place_of(face->vertex(0)), b = place_of(face->vertex(1)),
-                 c = place_of(face->vertex(2));
+      const Vec2 a = location_of(face->vertex(0)), b = location_of(face->vertex(1)),
+                 c = location_of(face->vertex(2));
       const double twice = (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
       if (twice > largest) {
         largest = twice;
@@ -198,12 +198,12 @@ class Collector {
         const Cdt::Vertex_handle v = face->vertex(k);
         if (v->info() < 0) {
           v->info() = static_cast<int>(mesh_.points.size());
-          mesh_.points.push_back(place_of(v));
+          mesh_.points.push_back(location_of(v));
         }
         nodes[static_cast<std::size_t>(k)] = v->info();
       }
       mesh_.triangles.push_back(nodes);
-      mesh_.piece.push_back(mesh_.n_pieces);
+      mesh_.piece.push_back(mesh_.n_connected_regions);
       for (int k = 0; k < 3; ++k) {
         const Cdt::Face_handle next = face->neighbor(k);
         if (cdt.is_infinite(next) || !next->is_in_domain() || next->info() >= 0) continue;
@@ -211,7 +211,7 @@ class Collector {
         waiting.push_back(next);
       }
     }
-    ++mesh_.n_pieces;
+    ++mesh_.n_connected_regions;
   }
 
   PartMesh mesh_;
@@ -233,7 +233,7 @@ PartMesher::PartMesher(std::span<const Region> regions, std::span<const Segment>
     auto piece = std::make_unique<Piece>(conforming, cut);
     if (!piece->seeds.empty()) impl_->pieces.push_back(std::move(piece));
   }
-  if (impl_->pieces.empty()) throw Error::numerical("mesh of a part: it has no area");
+  if (impl_->pieces.empty()) throw Error::numerical("mesh of a part: the part has no area");
 }
 PartMesher::~PartMesher() = default;
 PartMesher::PartMesher(PartMesher&&) noexcept = default;

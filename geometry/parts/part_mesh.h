@@ -24,7 +24,7 @@ struct PartMesh {
   /// share no side. Where two parts of one region share only a point, they are two connected
   /// regions with a common node.
   std::vector<int> piece;
-  int n_pieces = 0;  ///< Number of connected regions.
+  int n_connected_regions = 0;  ///< Number of connected regions.
 
   /// Returns the position of a node [m].
   const Vec2& point(int node) const { return points[static_cast<std::size_t>(node)]; }

@@ -90,14 +90,15 @@ class SampleColumn {
 /// Connected regions of material (cells that share edges), found one by one.
 class Pieces {
  public:
-  Pieces(const Grid& grid, const VectorXd& fractions, std::span<const HeldOrLoaded> places)
+  Pieces(const Grid& grid, const VectorXd& fractions, std::span<const HeldOrLoaded> locations)
       : grid_(grid),
         open_(static_cast<std::size_t>(grid.n_cells())),
-        places_of_cell_(static_cast<std::size_t>(grid.n_cells())),
-        touched_(places.size()) {
+        indices_of_cell_(static_cast<std::size_t>(grid.n_cells())),
+        touched_(locations.size()) {
     for (int c = 0; c < grid.n_cells(); ++c) open_[c] = fractions[c] >= 0.5;
-    for (std::size_t p = 0; p < places.size(); ++p) {
-      for (const int cell : places[p].cells) places_of_cell_[cell].push_back(static_cast<int>(p));
+    for (std::size_t p = 0; p < locations.size(); ++p) {
+      for (const int cell : locations[p].cells)
+        indices_of_cell_[cell].push_back(static_cast<int>(p));
     }
   }
 
@@ -112,7 +113,7 @@ class Pieces {
       const int cell = front_.back();
       front_.pop_back();
       const int column = cell / grid_.ny, row = cell % grid_.ny;
-      for (const int p : places_of_cell_[cell]) touched_[p] = true;
+      for (const int p : indices_of_cell_[cell]) touched_[p] = true;
       if (column > 0) enter(column - 1, row);
       if (column < grid_.nx - 1) enter(column + 1, row);
       if (row > 0) enter(column, row - 1);
@@ -131,7 +132,7 @@ class Pieces {
 
   const Grid& grid_;
   std::vector<bool> open_;
-  std::vector<std::vector<int>> places_of_cell_;
+  std::vector<std::vector<int>> indices_of_cell_;
   std::vector<bool> touched_;
   std::vector<int> front_;
 };
@@ -183,7 +184,7 @@ void update_area_fractions(const Grid& grid, std::span<const Component> componen
                            VectorXd& fractions, int samples) {
   if (samples < 1) {
     throw Error::input("area_fractions: samples = " + std::to_string(samples) +
-                       ": at least one to a cell is needed");
+                       ": at least one sample per cell is needed");
   }
   const std::vector<Stencil> all = stencils(components, min_half_thickness);
   const double dx = grid.dx() / samples, dy = grid.dy() / samples;
@@ -207,23 +208,24 @@ void update_area_fractions(const Grid& grid, std::span<const Component> componen
 }
 
 Connectivity connectivity_of(const std::vector<std::vector<bool>>& touched,
-                             std::span<const HeldOrLoaded> places) {
+                             std::span<const HeldOrLoaded> locations) {
   Connectivity out;
   out.islands = std::max(0, static_cast<int>(touched.size()) - 1);
-  for (std::size_t p = 0; p < places.size(); ++p) {
+  for (std::size_t p = 0; p < locations.size(); ++p) {
     const bool joined = std::any_of(touched.begin(), touched.end(), [&](const auto& piece) {
       if (!piece[p]) return false;
-      for (std::size_t other = 0; other < places.size(); ++other)
-        if (piece[other] && places[other].is_support != places[p].is_support) return true;
+      for (std::size_t other = 0; other < locations.size(); ++other)
+        if (piece[other] && locations[other].is_support != locations[p].is_support) return true;
       return false;
     });
     if (!joined)
-      (places[p].is_support ? out.unused_supports : out.loose_loads).push_back(places[p].name);
+      (locations[p].is_support ? out.unused_supports : out.loose_loads)
+          .push_back(locations[p].name);
   }
   out.connected = out.loose_loads.empty();
   // Loads on all material, such as weight, act on no cells: every support that material touches
   // carries them.
-  if (std::all_of(places.begin(), places.end(), [](const auto& p) { return p.is_support; })) {
+  if (std::all_of(locations.begin(), locations.end(), [](const auto& p) { return p.is_support; })) {
     out.unused_supports.clear();
     out.connected = std::any_of(touched.begin(), touched.end(), [](const auto& piece) {
       return std::find(piece.begin(), piece.end(), true) != piece.end();
@@ -233,17 +235,17 @@ Connectivity connectivity_of(const std::vector<std::vector<bool>>& touched,
 }
 
 Connectivity connectivity(const Grid& grid, const VectorXd& fractions,
-                          std::span<const HeldOrLoaded> places) {
+                          std::span<const HeldOrLoaded> locations) {
   assert(fractions.size() == grid.n_cells());
   const std::vector<HeldOrLoaded> ends =
-      places.empty() ? ends_of(grid) : std::vector<HeldOrLoaded>();
-  if (places.empty()) places = ends;
-  Pieces pieces(grid, fractions, places);
+      locations.empty() ? ends_of(grid) : std::vector<HeldOrLoaded>();
+  if (locations.empty()) locations = ends;
+  Pieces pieces(grid, fractions, locations);
   std::vector<std::vector<bool>> touched;
   for (int i = 0; i < grid.nx; ++i)
     for (int j = 0; j < grid.ny; ++j)
       if (pieces.is_open(i, j)) touched.push_back(pieces.take(i, j));
-  return connectivity_of(touched, places);
+  return connectivity_of(touched, locations);
 }
 
 }  // namespace flexmorph

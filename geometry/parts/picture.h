@@ -53,15 +53,15 @@ struct Connectivity {
   std::vector<std::string> unused_supports;  ///< Names of supports without a path to a load.
 };
 /// Returns the connectivity from the supports and loads that connected regions of material touch.
-/// @param touched  true where a region touches a support or load (n_regions x n_places)
-/// @param places   supports and loads (n_places)
+/// @param touched  true where a region touches a support or load (n_regions x n_locations)
+/// @param locations   supports and loads (n_locations)
 Connectivity connectivity_of(const std::vector<std::vector<bool>>& touched,
-                             std::span<const HeldOrLoaded> places);
+                             std::span<const HeldOrLoaded> locations);
 /// Returns the connectivity of a crisp picture. Cells with a fraction of at least 0.5 are material;
 /// cells that share an edge (not only a corner) belong to one connected region.
-/// @param places  supports and loads; empty means ends_of(grid)
+/// @param locations  supports and loads; empty means ends_of(grid)
 Connectivity connectivity(const Grid& grid, const VectorXd& fractions,
-                          std::span<const HeldOrLoaded> places = {});
+                          std::span<const HeldOrLoaded> locations = {});
 
 /// Returns the cells whose center lies in a region or on its boundary, in ascending order.
 std::vector<int> cells_within(const Grid& grid, const Region& region);

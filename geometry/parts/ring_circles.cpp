@@ -12,7 +12,7 @@ namespace {
 constexpr double kRoundOff = 1e-9;
 /// Smallest number of consecutive vertices that define a circle. Four are not enough, because four
 /// vertices lie on one circle wherever a curve is symmetric.
-constexpr std::size_t kFewest = 5;
+constexpr std::size_t kMinPoints = 5;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -64,13 +64,14 @@ class RunFinder {
         circle_through(vertex(first), vertex(first + 1), vertex(first + 2));
     if (!begin || !chord(*begin, first) || !chord(*begin, first + 1)) return {};
     Run run{*begin, first, 3};
-    for (std::size_t fit = kFewest; grows(run, run.first + run.count - 1, run.first + run.count);) {
+    for (std::size_t fit = kMinPoints;
+         grows(run, run.first + run.count - 1, run.first + run.count);) {
       ++run.count;
       if (run.count < fit) continue;
       fit = 2 * run.count;
       run.circle = fitted(run.circle, points_of(run));
     }
-    if (run.count < kFewest) return {};
+    if (run.count < kMinPoints) return {};
     const std::size_t n = ring_.size();
     while (grows(run, run.first + n - 1, run.first + n - 1)) {
       run.first = (run.first + n - 1) % n;
@@ -111,8 +112,8 @@ struct Found {
 
 /// Returns true if two circles differ by less than short arcs of them can resolve.
 bool are_one(const Disc& a, const Disc& b) {
-  constexpr double kNear = 1e-6;
-  const double near = kNear * std::min(a.radius, b.radius);
+  constexpr double kDistanceTolerance = 1e-6;
+  const double near = kDistanceTolerance * std::min(a.radius, b.radius);
   return (a.center - b.center).norm() <= near && std::abs(a.radius - b.radius) <= near;
 }
 
@@ -126,7 +127,7 @@ std::vector<Disc> circles_of(std::span<const std::vector<Vec2>> rings, double sa
   std::vector<Found> found;
   for (const std::vector<Vec2>& ring : rings) {
     const RunFinder finder(ring, sagitta);
-    if (ring.size() < kFewest) continue;
+    if (ring.size() < kMinPoints) continue;
     std::vector<bool> known_side(ring.size(), false);
     for (std::size_t k = 0; k < ring.size(); ++k) {
       if (known_side[k]) continue;

@@ -19,7 +19,8 @@ int enter_quarter(const Vec2& point, Vec2& corner, double& width) {
 
 SizeField::SizeField(const Box& box, double size)
     : box_(box), width_((box.upper - box.lower).maxCoeff()), squares_{{size}} {
-  if (!(width_ > 0) || !(size > 0)) throw Error::input("size field: box and size are positive");
+  if (!(width_ > 0) || !(size > 0))
+    throw Error::input("size field: the box and the element size must be positive");
 }
 
 double SizeField::at(const Vec2& point) const {

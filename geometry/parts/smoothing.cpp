@@ -21,7 +21,7 @@ constexpr double kSamples = 12, kWave = 5, kShift = 0.12;
 /// 1.5 features are halved everywhere.
 constexpr double kStraight = kPi / 9, kCorner = kPi / 4, kEverywhere = 0.0081;
 /// Points that are closer to fixed rings than this fraction of a feature are on them.
-constexpr double kOn = 1e-6;
+constexpr double kOnOutline = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -168,8 +168,8 @@ class Smoothing {
  public:
   Smoothing(std::span<const Ring> fixed, std::span<const Segment> mirrors,
             std::span<const Vec2> kept, double feature, double tolerance)
-      : fixed_(sides_of(fixed), kOn * feature),
-        mirrors_({mirrors.begin(), mirrors.end()}, kOn * feature),
+      : fixed_(sides_of(fixed), kOnOutline * feature),
+        mirrors_({mirrors.begin(), mirrors.end()}, kOnOutline * feature),
         kept_(kept),
         feature_(feature),
         tolerance_(tolerance) {}
@@ -204,20 +204,21 @@ class Smoothing {
 
  private:
   Ring chain(Ring points, bool closed) const {
-    constexpr int kFewest = 5;
-    constexpr double kSmall = 0.01, kSides = 0.2;  // fractions of the tolerance
+    constexpr int kMinPoints = 5;
+    constexpr double kPositionTolerance = 0.01, kSideTolerance = 0.2;  // fractions of the tolerance
     if (!closed && points.size() == 2) return points;
     const Chain chain(points, closed, feature_ / kSamples);
-    if (chain.n_samples() < kFewest) return points;
+    if (chain.n_samples() < kMinPoints) return points;
     const int per_feature = static_cast<int>(kSamples);
     std::vector<Vec2> shifts = chain.shifts(per_feature, kWave * feature_, kShift * feature_);
     for (std::size_t i = 0; i < shifts.size() && !kept_.empty(); ++i)
-      shifts[i] *= freedom(chain.sample(static_cast<int>(i)));
-    return simplified_line(chain.moved(shifts, kSmall * tolerance_), kSides * tolerance_);
+      shifts[i] *= range(chain.sample(static_cast<int>(i)));
+    return simplified_line(chain.moved(shifts, kPositionTolerance * tolerance_),
+                           kSideTolerance * tolerance_);
   }
 
   /// Returns the factor by which the shift of a point is reduced near points that must not move.
-  double freedom(const Vec2& p) const {
+  double range(const Vec2& p) const {
     double out = 1;
     for (const Vec2& k : kept_)
       out = std::min(out, std::clamp((p - k).norm() / feature_ - 1, 0.0, 1.0));

@@ -10,6 +10,7 @@
 #include "geometry/text.h"
 #include "io/case_files/case_forms.h"
 #include "io/case_files/case_parser.h"
+#include "io/case_files/other_terms.h"
 
 namespace flexmorph::io {
 namespace {
@@ -40,7 +41,7 @@ std::vector<std::string> split_key(const std::string& key, const std::string& op
   std::istringstream in(key);
   for (std::string part; std::getline(in, part, '.');) parts.push_back(part);
   if (parts.empty() || key.back() == '.' || !std::all_of(parts.begin(), parts.end(), is_bare_key))
-    throw Error::input(option + ": KEY is a dotted path such as body.thickness");
+    throw Error::input(option + ": KEY is a path with dots, such as body.thickness");
   return parts;
 }
 
@@ -62,7 +63,8 @@ CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<
   }
   if (list.entries.size() == 1) return list.entries[0];
   throw Error::input(option + ": " + so_far + " has " + std::to_string(list.entries.size()) +
-                     " entries; write " + so_far + ".ENTRY.KEY with one of " + joined(labels));
+                     " entries; write " + so_far + ".ENTRY.KEY, where ENTRY is one of " +
+                     joined(labels));
 }
 
 void collect_unknown(const CaseNode& node, const std::string& path,
@@ -86,13 +88,14 @@ void collect_unknown(const CaseNode& node, const std::string& path,
       collect_unknown(child, full, messages);
       continue;
     }
-    const std::string close = nearest(key, known);
     std::string message = ": unknown key";
-    if (!close.empty()) {
+    if (const std::string close = nearest(key, known), answer = answer_to_key(key);
+        !answer.empty()) {
+      message += "; " + answer;
+    } else if (!close.empty()) {
       message += ", did you mean '" + close + "'?";
     } else {
-      message += "; known here:";
-      for (const std::string& each : known) message += " " + each;
+      message += "; the keys allowed here are " + joined(known);
     }
     messages.push_back({child.line, located(child, full), message});
   }
@@ -191,8 +194,8 @@ void CaseNode::note(const std::string& about, const std::string& sentence,
                     const std::string& value) const {
   const auto old = std::find_if(notes.begin(), notes.end(),
                                 [&](const CaseNote& each) { return each.key == about; });
-  CaseNote& place = old == notes.end() ? notes.emplace_back() : *old;
-  place = {about, sentence, value};
+  CaseNote& location = old == notes.end() ? notes.emplace_back() : *old;
+  location = {about, sentence, value};
 }
 
 bool is_bare_key(const std::string& word) {
@@ -225,6 +228,7 @@ std::vector<std::string> entry_paths(const CaseNode& list, const std::string& li
 }
 
 std::string nearest(const std::string& word, std::span<const std::string> known) {
+  if (const std::string term = word_for_term(word, known); !term.empty()) return term;
   std::string best;
   size_t best_distance = std::max<size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
@@ -238,13 +242,13 @@ std::string nearest(const std::string& word, std::span<const std::string> known)
 }
 
 std::string located(const CaseNode& node, const std::string& key_path) {
-  constexpr size_t kLongest = 60;
-  if (node.is_option) return node.place;  // it contains key and value already
-  if (node.kind == CaseNode::Kind::table) return node.place + ": [" + key_path + "]";
-  if (is_list_of_tables(node)) return node.place + ": [[" + key_path + "]]";
-  const bool fits = node.shown.size() <= kLongest;
-  return node.place + ": " + key_path + " = " +
-         (fits ? node.shown : node.shown.substr(0, kLongest - 3) + "...");
+  constexpr size_t kMaxLineLength = 60;
+  if (node.is_option) return node.location;  // it contains key and value already
+  if (node.kind == CaseNode::Kind::table) return node.location + ": [" + key_path + "]";
+  if (is_list_of_tables(node)) return node.location + ": [[" + key_path + "]]";
+  const bool fits = node.shown.size() <= kMaxLineLength;
+  return node.location + ": " + key_path + " = " +
+         (fits ? node.shown : node.shown.substr(0, kMaxLineLength - 3) + "...");
 }
 
 CaseDocument::CaseDocument(const std::string& file)
@@ -254,7 +258,7 @@ void CaseDocument::apply(const std::string& change) {
   const std::string option = kOption + change;
   const size_t equals = change.find('=');
   if (equals == std::string::npos || change.find_first_of("\r\n") != std::string::npos)
-    throw Error::input(option + ": an override is written KEY=VALUE");
+    throw Error::input(option + ": an override has the form KEY=VALUE, on one line");
   const std::vector<std::string> keys = split_key(trimmed(change.substr(0, equals)), option);
   const std::string text_of_value = trimmed(change.substr(equals + 1));
   const bool removes = text_of_value.empty();
@@ -270,13 +274,13 @@ void CaseDocument::apply(const std::string& change) {
     if (!node) {
       CaseNode table;
       table.key = key;
-      table.place = option;
+      table.location = option;
       table.shown = "{...}";
       node = &here->entries.emplace_back(std::move(table));
     }
     if (is_list_of_tables(*node)) node = &entry_of(*node, so_far, keys, next, option);
     if (node->kind != CaseNode::Kind::table)
-      throw Error::input(option + ": " + so_far + " has no keys of its own");
+      throw Error::input(option + ": " + so_far + " is not a table and has no keys");
     here = node;
   }
   value.key = keys.back();
@@ -328,9 +332,9 @@ std::string CaseDocument::where(const std::string& key_path) const {
   const Looked found = look(key_path);
   for (const CaseNote& note : found.node->notes)
     if (!found.whole && note.key == found.next && !note.value.empty())
-      return found.node->place + ": " + (found.path.empty() ? "" : found.path + ".") + note.key +
+      return found.node->location + ": " + (found.path.empty() ? "" : found.path + ".") + note.key +
              " = " + note.value + " (not given)";
-  return found.path.empty() ? root.place : located(*found.node, found.path);
+  return found.path.empty() ? root.location : located(*found.node, found.path);
 }
 
 std::string CaseDocument::effective_text() const {
@@ -346,7 +350,9 @@ std::string CaseDocument::effective_text() const {
 std::string CaseDocument::explained_text() const {
   Writer writer{.explains = true};
   writer.write_table(root, "");
-  return "# The case with all values that it was read with.\n\n" + writer.out;
+  return "# This case file contains all values of the run, including those that were not "
+         "given.\n\n" +
+         writer.out;
 }
 
 }  // namespace flexmorph::io

@@ -31,7 +31,7 @@ struct CaseNode {
   bool is_inline = false;         ///< True for a table in braces.
   std::vector<CaseNode> entries;  ///< Entries of a table or a list.
 
-  std::string place;       ///< Location, such as "cases/four_bar.toml:14:13", or "--set KEY=VALUE".
+  std::string location;    ///< Location, such as "cases/four_bar.toml:14:13", or "--set KEY=VALUE".
   std::string shown;       ///< Value as it is written in the file: "-0.002", "[10, 2]".
   unsigned line = 0;       ///< Line in the file, by which messages are sorted.
   bool is_option = false;  ///< True if the value was set by a --set option.
@@ -79,9 +79,14 @@ struct CaseDocument {
   /// sentence of each key as a comment.
   std::string explained_text() const;
 
+  /// Replaces former names of keys and words by their present names, with a warning for each.
+  void rename_former_names();
+
   std::string path, text;            ///< Path of the file, and its text.
   std::vector<std::string> changes;  ///< Overrides in the order in which they were applied.
   CaseNode root;                     ///< Root table.
+  /// Warnings that name the location, the former and the present name of a key or a word.
+  std::vector<std::string> former_names;
 };
 
 /// Returns a value with its location, "cases/four_bar.toml:14:13: body.thickness = -0.002". For a

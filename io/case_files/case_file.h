@@ -37,7 +37,7 @@ class Table {
   /// Returns the path of the table, such as "body.flow"; empty for the root table.
   const std::string& path() const;
   /// Returns the location of the table, such as "cases/four_bar.toml:14:1".
-  std::string place() const;
+  std::string location() const;
   /// Returns the keys of the table in the order of the file, without marking them as known.
   std::vector<std::string> keys() const;
   /// Returns true if the file has the key, and marks it as known.
@@ -98,7 +98,7 @@ class Table {
   std::vector<Table> tables(const Key& key) const;
 
   /// Records the value of a missing key that is computed only later, for the text of explained().
-  void settle(const Key& key, const Value& value) const;
+  void record(const Key& key, const Value& value) const;
 
   /// Throws an error about the value of a key.
   /// @throws Error (input) "<file:line:column>: <path.key> = <value>: <allowed>".
@@ -116,10 +116,10 @@ class Table {
 
  private:
   friend class CaseFile;
-  struct Place;
-  explicit Table(std::shared_ptr<const Place> place) : place_(std::move(place)) {}
+  struct Location;
+  explicit Table(std::shared_ptr<const Location> location) : location_(std::move(location)) {}
   Table opened(const CaseNode& node, const std::string& path, const std::string& kind) const;
-  std::shared_ptr<const Place> place_;
+  std::shared_ptr<const Location> location_;
 };
 
 /// A case file (TOML) with the overrides of the command line.
@@ -151,6 +151,9 @@ class CaseFile {
   /// Returns true if the file or an override gives the key.
   bool gives(const std::string& key_path) const;
 
+  /// Returns the warnings about former names of keys and words that the file or an override uses.
+  const std::vector<std::string>& former_names() const;
+
   /// Checks that readers have accessed every key.
   /// @throws Error (input) with every unknown key and the most similar known one.
   void finish() const;
@@ -163,7 +166,7 @@ class CaseFile {
   std::string explained(std::span<const std::string> overrides = {}) const;
 
  private:
-  std::shared_ptr<const Table::Place> root_;
+  std::shared_ptr<const Table::Location> root_;
 };
 
 }  // namespace flexmorph::io

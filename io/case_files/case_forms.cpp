@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "io/case_files/other_terms.h"
 #include "io/files.h"
 
 namespace flexmorph::io {
@@ -101,27 +102,21 @@ std::string allowed_one(const CaseNode& node, const Form& form, const std::strin
     case Form::Kind::table:
       return "[" + full + "] is a table";
     case Form::Kind::tables:
-      return "a list of tables, each under its own [[" + full + "]]";
+      return "a list of tables, each with the heading [[" + full + "]]";
     case Form::Kind::word:
       break;
   }
   const Words words = form.words();
   if (words.empty()) return noun + " is a name in quotes";
-  return form.is_list ? one_of(noun, words) + ", none twice" : one_of(noun, words, node.text);
+  return form.is_list ? one_of(noun, words) + ", each name at most once"
+                      : one_of(noun, words, node.text);
 }
 
 std::string allowed(const CaseNode& node, const Form& form, const std::string& full) {
   std::string each = allowed_one(node, form, full);
   if (!form.is_list) return each;
   if (form.columns > 0) each = "lists of " + to_text(form.columns) + " numbers; " + each;
-  std::string count;
-  if (form.count() > 0)
-    count = " of " + to_text(form.count());
-  else if (form.most > 0)
-    count = " of " + to_text(form.least) + " to " + to_text(form.most);
-  else if (form.least > 1)
-    count = " of at least " + to_text(form.least);
-  return "a list" + count + ": " + each;
+  return list_of(form) + each;
 }
 
 using Declared = std::vector<const Key*>;
@@ -157,11 +152,13 @@ class BookReader {
         value(child, any->second, below(kind, "*"), full);
       } else {
         strange.push_back(child.key);
-        const std::string close = nearest(child.key, known);
+        const std::string close = nearest(child.key, known), answer = answer_to_key(child.key);
         out.unknown.push_back(
             {child.line, located(child, full),
-             ": unknown key" + (close.empty()
-                                    ? "; see flexmorph keys " + (kind.empty() ? "top" : kind)
+             ": unknown key" + (!answer.empty() ? "; " + answer
+                                : close.empty()
+                                    ? "; the command flexmorph keys " +
+                                          (kind.empty() ? "top" : kind) + " lists the allowed keys"
                                     : ", did you mean '" + close + "'?")});
       }
     }
@@ -210,7 +207,7 @@ class BookReader {
     const bool needed = declared.size() == 1 && key.is_needed() && key.condition.empty();
     if (!needed || name == "*" || node.find(name) || !nearest(name, strange).empty()) return;
     const std::string full = path.empty() ? name : path + "." + name;
-    out.missing.push_back({node.line, node.place + ": " + full + " is missing",
+    out.missing.push_back({node.line, node.location + ": " + full + " is missing",
                            ": " + allowed(CaseNode(), key.forms.front(), full)});
   }
 
@@ -241,12 +238,23 @@ std::string whole_number(const Form& form) {
   return start + "between " + to_text(form.lower) + " and " + to_text(form.upper);
 }
 
+std::string list_of(const Form& form) {
+  std::string count;
+  if (form.count() > 0)
+    count = " of " + to_text(form.count());
+  else if (form.most > 0)
+    count = " of " + to_text(form.least) + " to " + to_text(form.most);
+  else if (form.least > 1)
+    count = " of at least " + to_text(form.least);
+  return "a list" + count + ": ";
+}
+
 std::string number_or_name(const Form& form) {
   return form.quantity.allowed() + ", or the name of " + form.or_name;
 }
 
 std::string one_of(const std::string& noun, std::span<const std::string> allowed) {
-  if (allowed.empty()) return noun + ": this case has none";
+  if (allowed.empty()) return noun + " is allowed here, but this case has none";
   std::string text = noun + (allowed.size() == 1 ? " is " : " is one of ");
   for (size_t i = 0; i < allowed.size(); ++i) text += (i ? ", '" : "'") + allowed[i] + "'";
   return text;
@@ -262,12 +270,14 @@ std::string complaints_text(std::vector<Complaint> complaints, const std::string
   std::stable_sort(complaints.begin(), complaints.end(),
                    [](const Complaint& a, const Complaint& b) { return a.line < b.line; });
   // Twenty lines fit on a screen. A longer list usually has one common cause.
-  constexpr size_t kMost = 20;
-  const size_t n = complaints.size(), shown = n > kMost ? kMost - 1 : n;
+  constexpr size_t kMaxListed = 20;
+  const size_t n = complaints.size(), shown = n > kMaxListed ? kMaxListed - 1 : n;
   std::string all;
   for (size_t i = 0; i < shown; ++i)
     all += (i ? "\n" : "") + complaints[i].subject + complaints[i].words;
-  if (shown < n) all += "\n" + file + ": and " + to_text(static_cast<int>(n - shown)) + " more";
+  if (shown < n)
+    all +=
+        "\n" + file + ": " + to_text(static_cast<int>(n - shown)) + " more errors are not listed";
   return all;
 }
 

@@ -18,6 +18,8 @@ std::optional<int> read_integer(const CaseNode& node, const Form& form);
 /// Returns the text of a node, or nothing if it is not a text.
 std::optional<std::string> read_text(const CaseNode& node);
 
+/// Returns the beginning of a message about a list, with its number of entries: "a list of 3: ".
+std::string list_of(const Form& form);
 /// Returns the allowed values at the end of a message: "a length is positive [m], or the name of
 /// ...".
 std::string number_or_name(const Form& form);
@@ -29,7 +31,7 @@ std::string one_of(const std::string& noun, std::span<const std::string> allowed
 std::string one_of(const std::string& noun, std::span<const std::string> allowed,
                    const std::string& found);
 /// Text that follows the allowed numbers in a message if the file has a text instead of a number.
-inline constexpr const char* kNoQuotes = "; a number stands without quotes";
+inline constexpr const char* kNoQuotes = "; a number is written without quotes";
 
 /// A complaint about a case file.
 struct Complaint {

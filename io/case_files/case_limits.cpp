@@ -8,9 +8,9 @@
 namespace flexmorph::io {
 namespace {
 
-constexpr int kMostParts = 100;       // largest number of parts in a dotted key
+constexpr int kMaxKeyParts = 100;     // largest number of parts in a dotted key
 constexpr size_t kLongestKey = 2000;  // largest number of characters in a key
-constexpr int kDeepest = 100;         // largest depth of nested lists and tables in braces
+constexpr int kMaxNesting = 100;      // largest depth of nested lists and tables in braces
 
 /// Returns the end of the string that begins at `start`. Three quotes open a string of several
 /// lines.
@@ -38,9 +38,9 @@ size_t end_of_string(std::string_view text, size_t start) {
 void check_case_limits(const std::string& text, const std::string& name) {
   int line = 1, depth = 0, dots = 0;
   size_t key_start = 0;
-  const auto fail = [&](const std::string& what, size_t most) {
+  const auto fail = [&](const std::string& what, size_t most, const char* noun) {
     throw Error::input(name + ":" + std::to_string(line) + ": " + what + " at most " +
-                       std::to_string(most));
+                       std::to_string(most) + noun);
   };
   for (size_t i = 0; i < text.size();) {
     const char c = text[i];
@@ -51,14 +51,15 @@ void check_case_limits(const std::string& text, const std::string& name) {
     } else if (c == '#') {
       next = std::min(text.find('\n', i), text.size());
     } else if (c == '.') {
-      if (++dots >= kMostParts) fail("the parts of a key or number between dots are", kMostParts);
+      if (++dots >= kMaxKeyParts)
+        fail("a key or a number has", kMaxKeyParts, " parts between dots");
     } else if (std::string_view("[{").find(c) != std::string_view::npos) {
-      if (++depth > kDeepest) fail("lists and tables in each other are", kDeepest);
+      if (++depth > kMaxNesting) fail("lists and tables are nested", kMaxNesting, " levels deep");
     } else if (std::string_view("]}").find(c) != std::string_view::npos) {
       depth = std::max(0, depth - 1);
     }
     if (std::string_view("=,[]{}\n#").find(c) != std::string_view::npos) {
-      if (c == '=' && i - key_start > kLongestKey) fail("the characters of a key are", kLongestKey);
+      if (c == '=' && i - key_start > kLongestKey) fail("a key has", kLongestKey, " characters");
       dots = 0;
       key_start = next;
     }

@@ -16,7 +16,7 @@ namespace flexmorph::io {
 namespace {
 
 /// Returns ":14:13", line and column (characters, not bytes) as editors count them.
-std::string place_in(const toml::source_position& at) {
+std::string location_in(const toml::source_position& at) {
   return std::string(":")
       .append(std::to_string(at.line))
       .append(":")
@@ -39,9 +39,9 @@ struct Source {
   // true for lines of ASCII only; computed once, because lines may be long
   std::vector<bool> plain = plain_lines(lines);
 
-  std::string place(const toml::source_region& region) const {
+  std::string location(const toml::source_region& region) const {
     if (is_option || !region.begin) return name;
-    return name + place_in(region.begin);
+    return name + location_in(region.begin);
   }
 
   /// Returns a value as it is written in the source; empty if it fills several lines.
@@ -118,7 +118,7 @@ void convert_value(const toml::node& node, const Source& source, CaseNode& resul
 
 CaseNode convert(const toml::node& node, const Source& source) {
   CaseNode result;
-  result.place = source.place(node.source());
+  result.location = source.location(node.source());
   result.line = node.source().begin.line;
   if (const toml::table* table = node.as_table()) {
     result.is_inline = table->is_inline();
@@ -139,15 +139,16 @@ std::string read_text(const std::string& path) {
   const auto status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) throw Error::input(path + ": no such file");
   if (std::filesystem::is_directory(status))
-    throw Error::input(path + ": a directory; a case is one TOML file");
+    throw Error::input(path + ": this is a directory; a case is one TOML file");
   std::ifstream in(path, std::ios::binary);
   // A case may come from a pipe. The limit is needed because input from a device may never end.
-  constexpr size_t kMostBytes = 100'000'000;
+  constexpr size_t kMaxBytes = 100'000'000;
   std::string text, block(size_t{1} << 16U, '\0');
   while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
     text.append(block, 0, static_cast<size_t>(in.gcount()));
-    if (text.size() > kMostBytes)
-      throw Error::input(path + ": a case is one TOML file of at most 100 MB; here is more");
+    if (text.size() > kMaxBytes)
+      throw Error::input(
+          path + ": this file is larger than 100 MB; a case is one TOML file of at most 100 MB");
   }
   if (!in.is_open() || in.bad()) throw Error::input(path + ": cannot be read");
   return text;
@@ -161,25 +162,25 @@ std::string hint_of(const std::string& reason, const std::string& line, size_t c
   constexpr std::string_view kSaw = "saw '";
   const size_t mark = reason.find(kSaw);
   const char saw = mark == std::string::npos ? '\0' : reason[mark + kSaw.size()];
-  const auto at = [&](size_t place) {
-    return place < line.size() ? static_cast<unsigned char>(line[place]) : '\0';
+  const auto at = [&](size_t location) {
+    return location < line.size() ? static_cast<unsigned char>(line[location]) : '\0';
   };
   const bool behind_number = column >= 2 && (std::isdigit(at(column - 2)) || at(column - 2) == ' ');
   if (reason.find("utf-8") != std::string::npos) return "a case is UTF-8 text";
-  if (reason.find("value type") != std::string::npos) return "texts stand in quotes";
-  if (reason.find("parsing string") != std::string::npos) return "a quote is open";
-  if (saw == ':') return "a value follows '='";
-  if (saw == ',') return "numbers have a decimal point";
-  if (saw == ';') return "a line ends without a mark";
+  if (reason.find("value type") != std::string::npos) return "a text is written in quotes";
+  if (reason.find("parsing string") != std::string::npos) return "a closing quote is missing";
+  if (saw == ':') return "a key and its value are separated by '='";
+  if (saw == ',') return "a number has a decimal point, not a comma";
+  if (saw == ';') return "a line must not end with a semicolon";
   if (behind_number && std::isalpha(at(column - 1)) &&
       reason.find("comment or whitespace") != std::string::npos)
-    return "numbers are in SI units, which are not written";
+    return "a number is given in SI units, without the name of the unit";
   return "";
 }
 
 /// Returns the reason of an error, the line in which it is, and a hint.
 std::string syntax_text(const toml::parse_error& e, const std::string& text) {
-  constexpr size_t kLongest = 60;
+  constexpr size_t kMaxQuotedLength = 60;
   const std::string reason(e.description());
   const std::vector<std::string> lines = lines_of(text);
   const size_t number = e.source().begin.line;
@@ -192,7 +193,7 @@ std::string syntax_text(const toml::parse_error& e, const std::string& text) {
                                  [](char c) { return c == '\t' || (c >= 32 && c < 127); });
   std::string out = reason;
   if (const size_t first = line.find_first_not_of(" \t"); plain && first < line.size())
-    out.append(" in `").append(line, first, kLongest).append("`");
+    out.append(" in `").append(line, first, kMaxQuotedLength).append("`");
   if (!hint.empty()) out.append(": ").append(hint);
   return out;
 }
@@ -204,10 +205,11 @@ CaseNode parse_case(const std::string& text, const std::string& file) {
   try {
     const toml::table root = toml::parse(text, file);
     CaseNode node = convert(root, {lines_of(text), file, false});
-    node.place = file + ":1:1";  // location that messages name for missing keys
+    node.location = file + ":1:1";  // location that messages name for missing keys
     return node;
   } catch (const toml::parse_error& e) {
-    throw Error::input(file + place_in(e.source().begin) + ": not TOML: " + syntax_text(e, text));
+    throw Error::input(file + location_in(e.source().begin) +
+                       ": not TOML: " + syntax_text(e, text));
   }
 }
 
@@ -220,7 +222,7 @@ CaseNode parse_option(const std::string& value, const std::string& option) {
   check_case_limits(text, option);
   try {
     const toml::table root = toml::parse(text, option);
-    if (root.size() != 1) throw Error::input(option + ": one value at a time");
+    if (root.size() != 1) throw Error::input(option + ": VALUE must be one TOML value");
     CaseNode node = convert(*root.get("value"), {{text}, option, true});
     node.is_option = true;
     return node;

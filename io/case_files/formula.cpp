@@ -33,9 +33,10 @@ Node piecewise(const Nodes& x) {
   double last = -std::numeric_limits<double>::infinity();
   for (size_t i = 1; i < x.size(); i += 2) {
     if (!x[i].is_number())
-      throw std::domain_error("piecewise(x0, t1, x1, ...): its times are constants");
+      throw std::domain_error("the times t1, ... of piecewise(x0, t1, x1, ...) must be constants");
     const double from = x[i]->number;
-    if (!(from > last)) throw std::domain_error("piecewise(x0, t1, x1, ...): times increase");
+    if (!(from > last))
+      throw std::domain_error("the times t1, ... of piecewise(x0, t1, x1, ...) must increase");
     last = from;
     out = choose(-from + graph.time(), x[i + 1], out);
   }
@@ -89,7 +90,9 @@ class Parser {
       throw Error::input("a formula has at most " + std::to_string(kMaxCharacters) + " characters");
     try {
       const Node out = sum();
-      if (peek() != '\0') refuse("expected EOF, got: " + token());
+      if (peek() != '\0')
+        refuse("the formula must end here or continue with an operator, but " + token() +
+               " follows");
       return out;
     } catch (const std::domain_error& e) {  // from the operation that is being created
       refuse(written_, e.what());
@@ -97,8 +100,8 @@ class Parser {
   }
 
  private:
-  [[noreturn]] void refuse(size_t place, const std::string& why) const {
-    refuse_formula(text_, "character " + std::to_string(place + 1) + ": " + why);
+  [[noreturn]] void refuse(size_t location, const std::string& why) const {
+    refuse_formula(text_, "character " + std::to_string(location + 1) + ": " + why);
   }
   [[noreturn]] void refuse(const std::string& why) const { refuse(at_, why); }
 
@@ -109,15 +112,15 @@ class Parser {
     if (at_ == text_.size()) return '\0';
     const char c = text_[at_];
     if (static_cast<unsigned char>(c) > 127)
-      refuse("a formula has no letters beyond a to z, A to Z and _");
+      refuse("a formula contains no letters other than a to z, A to Z and _");
     if (!is_letter(c) && !is_digit(c) && std::string_view("+-*/^(),.").find(c) == std::string::npos)
-      refuse(std::string("a formula has no '") + c + "'");
+      refuse(std::string("the character '") + c + "' is not allowed in a formula");
     return c;
   }
 
   /// Returns the next name or character in quotes.
   std::string token() {
-    if (peek() == '\0') return "EOF";
+    if (peek() == '\0') return "the end of the formula";
     size_t end = at_;
     while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
     return '"' + text_.substr(at_, std::max<size_t>(end - at_, 1)) + '"';
@@ -126,9 +129,9 @@ class Parser {
   Node sum() {
     Node out = product();
     for (char c = peek(); c == '+' || c == '-'; c = peek()) {
-      const size_t place = at_++;
+      const size_t location = at_++;
       const Node next = product();
-      written_ = place;
+      written_ = location;
       out = c == '+' ? out + next : out - next;
     }
     return out;
@@ -137,9 +140,9 @@ class Parser {
   Node product() {
     Node out = after_signs(&Parser::power);
     for (char c = peek(); c == '*' || c == '/'; c = peek()) {
-      const size_t place = at_++;
+      const size_t location = at_++;
       const Node next = after_signs(&Parser::power);
-      written_ = place;
+      written_ = location;
       out = io::product(out, next, c == '*' ? 1 : -1);
     }
     return out;
@@ -149,7 +152,8 @@ class Parser {
   Node after_signs(Node (Parser::*read)()) {
     bool negative = false;
     for (int n = 1; peek() == '+' || peek() == '-'; ++n, ++at_) {
-      if (n > kMaxSigns) refuse("more than " + std::to_string(kMaxSigns) + " signs in a row");
+      if (n > kMaxSigns)
+        refuse("there are more than " + std::to_string(kMaxSigns) + " signs in a row");
       negative ^= text_[at_] == '-';
     }
     const Node out = (this->*read)();
@@ -159,12 +163,12 @@ class Parser {
   Node power() {
     const Node base = operand();
     if (peek() != '^') return base;
-    const size_t place = at_++;
+    const size_t location = at_++;
     const Node exponent = after_signs(&Parser::operand);
     if (peek() == '^') refuse("a^b^c needs parentheses: (a^b)^c or a^(b^c)");
     if (exponent.is_number() && std::abs(exponent->number) > kLargestExponent)
-      refuse(place, "an exponent is at most 1e6");
-    written_ = place;
+      refuse(location, "an exponent is at most 1e6");
+    written_ = location;
     return io::power(base, exponent);
   }
 
@@ -173,18 +177,18 @@ class Parser {
     if (c == '(') return in_parentheses(1)[0];
     if (is_digit(c) || c == '.') return number();
     if (is_letter(c)) return name();
-    refuse("unexpected token, got: " + token());
+    refuse("a number, a name or '(' is needed here, but " + token() + " follows");
   }
 
   /// Reads at most `most` sums between parentheses, separated by commas.
   Nodes in_parentheses(size_t most) {
     if (++depth_ > kMaxParentheses)
       refuse("more than " + std::to_string(kMaxParentheses) + " parentheses are open");
-    const size_t place = at_++;
-    if (peek() == ')') refuse(place, "nothing is in these parentheses");
+    const size_t location = at_++;
+    if (peek() == ')') refuse(location, "these parentheses are empty");
     Nodes out = {sum()};
     for (; peek() == ',' && out.size() < most; out.push_back(sum())) ++at_;
-    if (peek() != ')') refuse("expected ')', got: " + token());
+    if (peek() != ')') refuse("')' is needed here, but " + token() + " follows");
     ++at_;
     --depth_;
     return out;
@@ -196,7 +200,7 @@ class Parser {
     auto [end, error] = std::from_chars(begin, text_end, value);
     for (; end != text_end && (is_digit(*end) || *end == '.'); ++end)
       error = std::errc::invalid_argument;  // a second decimal point
-    if (error != std::errc()) refuse("'" + std::string(begin, end) + "' is no number");
+    if (error != std::errc()) refuse("'" + std::string(begin, end) + "' is not a number");
     at_ += static_cast<size_t>(end - begin);
     return graph_.number(value);
   }
@@ -207,22 +211,25 @@ class Parser {
     const std::string name = text_.substr(start, at_ - start);
     if (peek() == '(') return called(name, start);
     if (is_function(name))
-      refuse(start, "the function '" + name + "' has its argument in parentheses");
+      refuse(start, "the function '" + name + "' needs its argument in parentheses");
     if (name == "t") return graph_.time();
     if (name == "pi") return graph_.number(std::numbers::pi);
     const auto constant = constants_.find(name);
     if (constant != constants_.end()) return graph_.number(constant->second);
-    refuse(start, "'" + name + "' is unknown: a formula knows the time t, pi and given constants");
+    refuse(start,
+           "'" + name +
+               "' is unknown: a formula may contain the time t, pi and the constants of the case");
   }
 
-  Node called(const std::string& name, size_t place) {
-    if (!is_function(name)) refuse(place, "there is no function '" + name + "'");
+  Node called(const std::string& name, size_t location) {
+    if (!is_function(name)) refuse(location, "there is no function '" + name + "'");
     const Nodes x = in_parentheses(text_.size());
     const BuiltFunction* built = find_built_function(name);
     const size_t wanted = built ? built->n_arguments : 1;
     if (wanted == 0 ? x.size() < 3 || x.size() % 2 == 0 : x.size() != wanted)
-      refuse(place, "no function \"" + name + "\" with " + std::to_string(x.size()) + " arguments");
-    written_ = place;
+      refuse(location, "the function '" + name + "' cannot have " + std::to_string(x.size()) +
+                           (x.size() == 1 ? " argument" : " arguments"));
+    written_ = location;
     return built ? built->build(x) : call(name, x[0]);
   }
 
@@ -244,11 +251,12 @@ std::string Formula::refusal_of_name(const std::string& name) {
   if (name.empty() || !is_letter(name[0]) || name[0] == '_')
     return "the name of a constant begins with a letter";
   for (const char c : name)
-    if (!is_letter(c) && !is_digit(c)) return "letters, digits and _ make the name of a constant";
-  if (name == "t") return "t is the time";
-  if (is_function(name)) return "this is a function";
+    if (!is_letter(c) && !is_digit(c))
+      return "the name of a constant contains only letters, digits and _";
+  if (name == "t") return "the name t is reserved for the time";
+  if (is_function(name)) return "this name is reserved for a function";
   for (const char* taken : {"pi", "I", "Pi", "Euler", "Catalan"})
-    if (name == taken) return "this name has a meaning in formulas already";
+    if (name == taken) return "this name is reserved in formulas";
   return "";
 }
 
@@ -257,7 +265,8 @@ Formula::Formula(std::string text, const std::map<std::string, double>& constant
   for (const auto& [name, value] : constants) {
     const std::string why = refusal_of_name(name);
     if (!why.empty()) throw Error::input("constant '" + name + "': " + why);
-    if (!std::isfinite(value)) throw Error::input("constant '" + name + "': not a finite number");
+    if (!std::isfinite(value))
+      throw Error::input("constant '" + name + "': its value is not a finite number");
   }
   Graph graph;
   const Node value = Parser(text_, constants, graph).run();

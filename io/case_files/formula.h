@@ -51,7 +51,7 @@ class Formula {
   /// @throws Error (input) with formula and time when value, rate or acceleration is not finite at
   ///         one of `samples` + 1 equally spaced times or at a discontinuity [s], or when value or
   ///         rate jumps between two of these times (a pole, or the cut of atan2). Jumps at
-  ///         discontinuities from kinks() are allowed.
+  ///         discontinuities from discontinuities() are allowed.
   void check(double end, int samples = 1000) const;
 
   /// Returns the times in (0, end], in ascending order, at which one of the functions with
@@ -61,7 +61,7 @@ class Formula {
   /// between two samples are found, and pairs of sign changes around one extremum of the argument
   /// near zero. All other pairs of sign changes between two samples are not found.
   /// @throws Error (input) when the search takes more than 1e8 operations.
-  std::vector<double> kinks(double end) const;
+  std::vector<double> discontinuities(double end) const;
 
   /// A jump of the value or of the rate at a discontinuity.
   struct Jump {

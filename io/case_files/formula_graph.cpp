@@ -16,7 +16,7 @@ struct ElementaryFunction {
 namespace {
 
 constexpr const char* kNoQuotient =
-    "division by zero, or a power of 0 whose exponent is not positive at all times";
+    "it contains a division by zero, or a power of 0 whose exponent is not always positive";
 constexpr double kLargestWhole = 64;  // largest exponent that is computed by multiplications
 constexpr double kLargestLog = 200;  // limit for the factor of a power, so that no double overflows
 
@@ -41,7 +41,7 @@ const ElementaryFunction* find_function(const std::string& name) {
   return nullptr;
 }
 
-double whole_power(double x, int n) {
+double total_power(double x, int n) {
   if (n == 2) return x * x;
   if (n == -1) return 1 / x;
   double out = 1;
@@ -62,8 +62,8 @@ double evaluate(const Operation& o, double t, const double* x) {
       return x[o.a] * x[o.b];
     case Op::scale:
       return o.number * x[o.a];
-    case Op::whole_power:
-      return whole_power(x[o.a], o.exponent);
+    case Op::total_power:
+      return total_power(x[o.a], o.exponent);
     case Op::power:
       return std::pow(x[o.a], x[o.b]);
     case Op::call:
@@ -83,7 +83,7 @@ std::pair<Node, double> as_power(Node x) {
   static const ElementaryFunction* const kRoot = find_function("sqrt");
   double exponent = 1;
   for (;; x = x.at(x->a)) {
-    if (x->op == Op::whole_power)
+    if (x->op == Op::total_power)
       exponent *= x->exponent;
     else if (x->op == Op::call && x->function == kRoot)
       return {x.at(x->a), 0.5 * exponent};
@@ -163,9 +163,9 @@ Node power(Node x, double exponent) {
     return graph.push({.op = Op::power, .a = x.index, .b = graph.number(exponent).index});
   const bool is_root = !is_whole(exponent);
   if (is_root) x = call("sqrt", x);
-  if (exponent < 0) x = graph.push({.op = Op::whole_power, .a = x.index, .exponent = -1});
+  if (exponent < 0) x = graph.push({.op = Op::total_power, .a = x.index, .exponent = -1});
   const int whole = static_cast<int>(std::abs(is_root ? 2 * exponent : exponent));
-  return whole == 1 ? x : graph.push({.op = Op::whole_power, .a = x.index, .exponent = whole});
+  return whole == 1 ? x : graph.push({.op = Op::total_power, .a = x.index, .exponent = whole});
 }
 
 Node power(Node x, Node exponent) {
@@ -197,8 +197,8 @@ Node call(const std::string& name, Node x) {
 bool is_elementary_function(const std::string& name) { return find_function(name) != nullptr; }
 
 Node Graph::number(double value) {
-  if (std::isnan(value)) throw std::domain_error("its value is no real number");
-  if (std::isinf(value)) throw std::domain_error("a number in it is too large");
+  if (std::isnan(value)) throw std::domain_error("its value is not a real number");
+  if (std::isinf(value)) throw std::domain_error("it contains a number that is too large");
   return push({.op = Op::constant, .number = value});
 }
 
@@ -214,9 +214,10 @@ Node Graph::push(const Operation& operation) {
     x[static_cast<size_t>(n++)] = node->number;
   }
   if (folds) return number(evaluate(of_numbers, 0, x.data()));
-  const auto [place, is_new] = places.try_emplace(operation, static_cast<int>(operations.size()));
+  const auto [location, is_new] =
+      locations.try_emplace(operation, static_cast<int>(operations.size()));
   if (is_new) operations.push_back(operation);
-  return {this, place->second};
+  return {this, location->second};
 }
 
 namespace {
@@ -266,18 +267,19 @@ Formula::Program differentiated(Node value) {
   const Node rate = derivative(value, derivatives), acceleration = derivative(rate, derivatives);
   const std::vector<char> needed = needed_for({value, rate, acceleration});
   Formula::Program out;
-  std::vector<int> places(needed.size());
-  const auto place_of = [&](int i) { return i < 0 ? i : places[static_cast<size_t>(i)]; };
+  std::vector<int> locations(needed.size());
+  const auto location_of = [&](int i) { return i < 0 ? i : locations[static_cast<size_t>(i)]; };
   for (size_t i = 0; i < needed.size(); ++i) {
     if (!needed[i]) continue;
-    places[i] = static_cast<int>(out.operations.size());
+    locations[i] = static_cast<int>(out.operations.size());
     Operation& o = out.operations.emplace_back(value.graph->operations[i]);
-    for (int* operand : {&o.a, &o.b, &o.c}) *operand = place_of(*operand);
+    for (int* operand : {&o.a, &o.b, &o.c}) *operand = location_of(*operand);
   }
   if (out.operations.size() > kMaxOperations)
-    throw std::length_error("it is too long: value, rate and acceleration take more than " +
+    throw std::length_error("it is too long: its value, rate and acceleration need more than " +
                             std::to_string(kMaxOperations) + " operations");
-  out.results = {place_of(value.index), place_of(rate.index), place_of(acceleration.index)};
+  out.results = {location_of(value.index), location_of(rate.index),
+                 location_of(acceleration.index)};
   return out;
 }
 

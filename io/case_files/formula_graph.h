@@ -21,7 +21,7 @@ enum class Op {
   add,          ///< a + b
   multiply,     ///< a b
   scale,        ///< number a
-  whole_power,  ///< a^exponent, the exponent -1 or from 2 to 128
+  total_power,  ///< a^exponent, the exponent -1 or from 2 to 128
   power,        ///< a^b
   call,         ///< function(a)
   atan2,        ///< the angle of the point (b, a)
@@ -32,7 +32,7 @@ enum class Op {
 struct Operation {
   Op op;                                         ///< Kind of the operation.
   int a = -1, b = -1, c = -1;                    ///< Indices of the operands; -1: none.
-  int exponent = 0;                              ///< Exponent of whole_power.
+  int exponent = 0;                              ///< Exponent of total_power.
   double number = 0;                             ///< Number of constant and scale.
   const ElementaryFunction* function = nullptr;  ///< Function of call.
 
@@ -103,7 +103,7 @@ bool is_elementary_function(const std::string& name);
 struct Graph {
   /// All operations; a deque, because references to them must stay valid.
   std::deque<Operation> operations;
-  std::map<Operation, int> places;  ///< Index of each operation.
+  std::map<Operation, int> locations;  ///< Index of each operation.
 
   /// Returns the node of a constant.
   Node number(double value);

@@ -167,7 +167,17 @@ Key& Key::when(std::string words) {
   return *this;
 }
 
-Key& Key::says(std::string words) {
+Key& Key::formerly(std::string name_of_last_version) {
+  former_names.push_back(std::move(name_of_last_version));
+  return *this;
+}
+
+Key& Key::renames(Glossary words_and_present_names) {
+  renamings = std::move(words_and_present_names);
+  return *this;
+}
+
+Key& Key::description(std::string words) {
   sentence = std::move(words);
   return *this;
 }
@@ -175,7 +185,7 @@ Key& Key::says(std::string words) {
 const Form& Key::form(Form::Kind kind, bool is_list) const {
   for (const Form& form : forms)
     if (form.kind == kind && form.is_list == is_list) return form;
-  throw std::logic_error("key '" + name + "' is read as what it is not declared to be");
+  throw std::logic_error("key '" + name + "' is read in a form for which it is not declared");
 }
 
 Key Key::within(double lower, double upper) const {
@@ -215,15 +225,15 @@ Key Key::named(std::string own) const {
   return out;
 }
 
-Key& key(std::string table, std::string name, std::source_location place) {
-  return shared_key({std::move(table)}, std::move(name), place);
+Key& key(std::string table, std::string name, std::source_location location) {
+  return shared_key({std::move(table)}, std::move(name), location);
 }
 
-Key& shared_key(std::vector<std::string> tables, std::string name, std::source_location place) {
+Key& shared_key(std::vector<std::string> tables, std::string name, std::source_location location) {
   Key& out = book().emplace_back();
   out.tables = std::move(tables);
   out.name = std::move(name);
-  out.place = place;
+  out.location = location;
   return out;
 }
 

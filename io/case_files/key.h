@@ -79,8 +79,11 @@ class Key {
 
   /// Explanations of the words, if they need any; may be empty.
   std::function<Glossary()> meanings;
-  std::source_location place;  ///< Location of the declaration in the source code.
-  bool is_named = false;       ///< True if the user chose the name, and this is one of the keys.
+  std::vector<std::string> former_names;  ///< Names of the key in the last version.
+  /// Words of the last version (of a table with free names: its names) and their present names.
+  Glossary renamings;
+  std::source_location location;  ///< Location of the declaration in the source code.
+  bool is_named = false;          ///< True if the user chose the name, and this is one of the keys.
 
   /// Adds the form of a number within the limits of a quantity.
   Key& number(Quantity quantity);
@@ -127,7 +130,12 @@ class Key {
   /// Sets the condition under which the key is allowed.
   Key& when(std::string words);
   /// Sets the sentence that explains the key.
-  Key& says(std::string words);
+  Key& description(std::string words);
+
+  /// Adds a name that the key had in the last version. It is read with a warning.
+  Key& formerly(std::string name_of_last_version);
+  /// Adds words of the last version and their present names. They are read with a warning.
+  Key& renames(Glossary words_and_present_names);
 
   /// Returns true if the key is required wherever it is allowed, because there is no value for a
   /// missing key.
@@ -154,10 +162,10 @@ class Key {
 
 /// Declares a key of one table and adds it to all_keys().
 Key& key(std::string table, std::string name,
-         std::source_location place = std::source_location::current());
+         std::source_location location = std::source_location::current());
 /// Declares a key that several tables have and adds it to all_keys().
 Key& shared_key(std::vector<std::string> tables, std::string name,
-                std::source_location place = std::source_location::current());
+                std::source_location location = std::source_location::current());
 
 /// Returns all keys that the program declares. Their order depends on the linker.
 const std::deque<Key>& all_keys();

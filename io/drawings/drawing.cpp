@@ -46,7 +46,7 @@ double size_of(const Drawing& d) {
       for (int k = 0; k <= kPoints; ++k) {
         const Vec2 p = c.at(k / double(kPoints));
         if (!(p.cwiseAbs().maxCoeff() < 1e30))
-          throw Error::input("a coordinate is not a number below 1e30");
+          throw Error::input("a coordinate is not a finite number below 1e30");
         lower = lower.cwiseMin(p);
         upper = upper.cwiseMax(p);
       }
@@ -56,9 +56,9 @@ double size_of(const Drawing& d) {
 /// Appends points of a curve except its last one, so many that the sides are within the tolerance.
 /// The test uses three points between the ends of each side.
 void flatten(const Curve& curve, double tolerance, Ring& out) {
-  constexpr int kFewest = 8, kMost = 1 << 14;
-  int n = curve.straight ? 1 : kFewest;
-  for (bool fine = curve.straight; !fine && n < kMost;) {
+  constexpr int kMinPoints = 8, kMaxPoints = 1 << 14;
+  int n = curve.straight ? 1 : kMinPoints;
+  for (bool fine = curve.straight; !fine && n < kMaxPoints;) {
     double off = 0;
     for (int k = 0; k < n; ++k) {
       const Vec2 a = curve.at(k / double(n)), b = curve.at((k + 1) / double(n));
@@ -90,10 +90,10 @@ void close_chains(Drawing& d, double near) {
     open.push_back(std::move(path));
     return true;
   });
-  constexpr size_t kMostOpen = 10'000;  // each is compared with all others
-  if (open.size() > kMostOpen)
-    throw Error::input("more than " + to_text(static_cast<long long>(kMostOpen)) +
-                       " lines and arcs to be joined: polylines are wanted");
+  constexpr size_t kMaxOpenCurves = 10'000;  // each is compared with all others
+  if (open.size() > kMaxOpenCurves)
+    throw Error::input("there are more than " + to_text(static_cast<long long>(kMaxOpenCurves)) +
+                       " lines and arcs to be joined; draw the outlines as polylines");
   while (!open.empty()) {
     Path chain = std::move(open.back());
     open.pop_back();
@@ -103,7 +103,7 @@ void close_chains(Drawing& d, double near) {
       const auto next = std::find_if(open.begin(), open.end(), joins);
       if (next == open.end())
         throw Error::input("a curve is open: it ends at " + words(end) +
-                           ", and no other begins there; outlines are closed");
+                           ", where no other curve begins; an outline is a closed curve");
       if (std::find_if(next + 1, open.end(), joins) != open.end())
         throw Error::input("more than two curves meet at " + words(end));
       Path piece = meet(next->begin(), end) ? std::move(*next) : reversed(std::move(*next));
@@ -115,13 +115,13 @@ void close_chains(Drawing& d, double near) {
 }
 
 /// Points that are closer than this fraction of the tolerance are merged.
-constexpr double kSame = 1e-4;
+constexpr double kSamePoint = 1e-4;
 
 Ring ring_of(const Path& path, double tolerance) {
   Ring all, ring;
   for (const Curve& c : path.curves) flatten(c, tolerance, all);
   all.push_back(path.end());
-  const double same = kSame * tolerance;
+  const double same = kSamePoint * tolerance;
   for (const Vec2& p : all)
     if (ring.empty() || (p - ring.back()).norm() > same) ring.push_back(p);
   // The end of the last curve coincides with the start of the first one.
@@ -133,14 +133,14 @@ Ring ring_of(const Path& path, double tolerance) {
 }  // namespace
 
 std::vector<std::vector<Vec2>> drawing::closed_rings(Drawing d, double unit) {
-  if (d.paths.empty()) throw Error::input("no closed curve is in it");
+  if (d.paths.empty()) throw Error::input("it contains no closed curve");
   const double tolerance = kDrawingTolerance * size_of(d);
   close_chains(d, tolerance);
   std::vector<Ring> rings;
   for (const Path& p : d.paths) {
     rings.push_back(ring_of(p, tolerance));
     if (rings.back().size() < 3)
-      throw Error::input("a curve at " + words(p.begin()) + " has no area");
+      throw Error::input("the curve that begins at " + words(p.begin()) + " has no area");
     for (Vec2& v : rings.back()) v *= unit;
   }
   return rings;
@@ -166,10 +166,10 @@ std::vector<std::vector<Vec2>> read_drawing(const std::string& path,
   const std::string text = read_regular_file(path, "a drawing");
   try {
     if (type == ".svg" && !settings.layers.empty())
-      throw Error::input("only DXF files have layers");
+      throw Error::input("layers are given, but only DXF files have layers");
     Drawing d = type == ".dxf" ? drawing::read_dxf(text, settings.layers) : drawing::read_svg(text);
     const std::optional<double> unit = settings.unit ? settings.unit : d.unit;
-    if (!unit) throw Error::input("it says no unit of length: " + settings.needs_unit);
+    if (!unit) throw Error::input("it contains no unit of length: " + settings.needs_unit);
     return drawing::closed_rings(std::move(d), *unit);
   } catch (const Error& error) {
     throw Error::input(path + ": " + error.what());

@@ -95,7 +95,7 @@ std::vector<Curve> spline(Spline s);
 std::vector<std::vector<Vec2>> closed_rings(Drawing drawing, double unit);
 
 /// Largest number of curves that a drawing may have.
-constexpr std::size_t kMostCurves = 100'000;
+constexpr std::size_t kMaxCurves = 100'000;
 /// Returns the contents of a DXF file.
 /// @param layers  layers that are read; empty: all
 Drawing read_dxf(const std::string& text, const std::vector<std::string>& layers);

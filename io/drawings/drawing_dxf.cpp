@@ -41,7 +41,8 @@ class Reader : public DL_CreationAdapter {
   Drawing take() {
     finish();
     for (const std::string& layer : layers_)
-      if (!known_.contains(layer)) throw Error::input("nothing is on a layer '" + layer + "'");
+      if (!known_.contains(layer))
+        throw Error::input("the layer '" + layer + "' contains no curves");
     return std::move(drawing_);
   }
 
@@ -56,12 +57,14 @@ class Reader : public DL_CreationAdapter {
   // The contents of a block are drawn where the block is inserted.
   void addBlock(const DL_BlockData&) override { in_block_ = true; }
   void endBlock() override { in_block_ = false; }
-  void addInsert(const DL_InsertData&) override { refuse("INSERT: blocks are to be exploded"); }
+  void addInsert(const DL_InsertData&) override {
+    refuse("INSERT: blocks are not supported; explode them in the CAD program");
+  }
   void addSpline(const DL_SplineData& d) override {
     finish();
     in_spline_ = wanted();
     if (in_spline_ && d.nControl == 0)
-      throw Error::input("SPLINE through fit points alone: control points are wanted");
+      throw Error::input("SPLINE: it has only fit points, but control points are needed");
     spline_.degree = d.degree;
     closed_ = (d.flags & 1) != 0;
   }
@@ -115,8 +118,8 @@ class Reader : public DL_CreationAdapter {
     if (wanted()) throw Error::input(what);
   }
   void count() {
-    if (++n_ > kMostCurves)
-      throw Error::input("more than " + std::to_string(kMostCurves) + " lines and arcs");
+    if (++n_ > kMaxCurves)
+      throw Error::input("it contains more than " + std::to_string(kMaxCurves) + " lines and arcs");
   }
   void add(std::vector<Curve> curves, bool closed) {
     finish();
@@ -153,7 +156,7 @@ class Reader : public DL_CreationAdapter {
 };
 
 void read(const std::string& text, Reader& reader) {
-  if (text.find("ENTITIES") == std::string::npos) throw Error::input("this is no DXF file");
+  if (text.find("ENTITIES") == std::string::npos) throw Error::input("this is not a DXF file");
   std::istringstream in(text);
   DL_Dxf dxf;
   dxf.in(in, &reader);

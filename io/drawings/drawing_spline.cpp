@@ -14,13 +14,15 @@ void check(const Spline& s) {
   const std::size_t n = s.points.size();
   if (s.degree < 1 || s.degree > kHighestDegree || n < s.degree + 1 ||
       s.knots.size() != n + s.degree + 1)
-    throw Error::input("SPLINE of degree " + std::to_string(s.degree) + " with " +
-                       std::to_string(n) + " control points and " + std::to_string(s.knots.size()) +
-                       " knots: points + degree + 1 knots are wanted");
+    throw Error::input(
+        "SPLINE of degree " + std::to_string(s.degree) + " with " + std::to_string(n) +
+        " control points and " + std::to_string(s.knots.size()) +
+        " knots: the degree must lie between 1 and " + std::to_string(kHighestDegree) +
+        ", and the number of knots must be the number of control points + degree + 1");
   if (!std::is_sorted(s.knots.begin(), s.knots.end()))
-    throw Error::input("SPLINE: knots are ascending");
+    throw Error::input("SPLINE: its knots must be ascending");
   if (!std::all_of(s.weights.begin(), s.weights.end(), [](double w) { return w > 0; }))
-    throw Error::input("SPLINE: weights are positive");
+    throw Error::input("SPLINE: its weights must be positive");
 }
 
 /// Returns the point at a parameter between the knots `span` and `span` + 1.
@@ -55,7 +57,7 @@ std::vector<Curve> spline(Spline given) {
                    },
                    s->degree == 1});
   }
-  if (out.empty()) throw Error::input("SPLINE: all of its knots are one");
+  if (out.empty()) throw Error::input("SPLINE: all its knots are equal");
   return out;
 }
 

@@ -40,7 +40,7 @@ std::vector<double> numbers(std::string_view text) {
     out.push_back(value);
     text.remove_prefix(static_cast<size_t>(end - text.data()));
   }
-  if (!text.empty()) throw Error::input("'" + std::string(text) + "' is no number");
+  if (!text.empty()) throw Error::input("'" + std::string(text) + "' is not a number");
   return out;
 }
 
@@ -52,7 +52,7 @@ struct Length {
 Length length(const std::string& text) {
   Length out;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.value);
-  if (error != std::errc()) throw Error::input("'" + text + "' is no length");
+  if (error != std::errc()) throw Error::input("'" + text + "' is not a length");
   out.unit.assign(end, text.data() + text.size());
   return out;
 }
@@ -63,7 +63,7 @@ double number(xmlNode* node, const char* name, double otherwise = 0) {
   const Length l = length(*text);
   if (!l.unit.empty() && l.unit != "px")
     throw Error::input(name_of(node) + " with " + name + " = '" + *text +
-                       "': shapes are drawn in the units of the page");
+                       "': the sizes of shapes must have no unit, or the unit px");
   return l.value;
 }
 
@@ -82,7 +82,7 @@ Geom::Affine one_transform(const std::string& name, const std::vector<double>& v
     return Geom::Translate(-v[1], -v[2]) * turn * Geom::Translate(v[1], v[2]);
   }
   throw Error::input("transform '" + name + "' of " + to_text(static_cast<int>(v.size())) +
-                     " numbers is not known");
+                     " numbers is not supported");
 }
 
 /// Returns the transformation of the attribute `transform`; the last one in the list is applied
@@ -94,7 +94,7 @@ Geom::Affine transform(const std::string& text) {
     if (at == std::string::npos) break;
     const size_t open = text.find('(', at), close = text.find(')', at);
     if (open == std::string::npos || close == std::string::npos || close < open)
-      throw Error::input("transform = '" + text + "' is not known");
+      throw Error::input("transform = '" + text + "' is not supported");
     std::string name = text.substr(at, open - at);
     name.erase(name.find_last_not_of(" \t\r\n") + 1);
     out = one_transform(name, numbers(text.substr(open + 1, close - open - 1))) * out;
@@ -116,11 +116,13 @@ class Reader {
       const Geom::Affine all = own ? transform(*own) * above : above;
       const std::string name = name_of(node);
       if (name == "g" || name == "a") {
-        if (++depth_ > kDeepest) throw Error::input("more than 100 groups in each other");
+        if (++depth_ > kMaxNesting)
+          throw Error::input("groups are nested more than 100 levels deep");
         read(node, all);
         --depth_;
       } else if (name == "use" || name == "svg") {
-        throw Error::input(name + ": copies and pages within pages are to be resolved");
+        throw Error::input(
+            name + ": copies and nested svg elements are not supported; convert them to paths");
       } else {
         add(node, name, all * page_);
       }
@@ -129,7 +131,7 @@ class Reader {
   Drawing take() { return std::move(drawing_); }
 
  private:
-  static constexpr int kDeepest = 100;
+  static constexpr int kMaxNesting = 100;
 
   void add(xmlNode* node, const std::string& name, const Geom::Affine& all) {
     const auto at = [&](double x, double y) {
@@ -145,7 +147,8 @@ class Reader {
       add_corners(corners, name == "polygon");
     } else if (name == "rect") {
       if (number(node, "rx") != 0 || number(node, "ry") != 0)
-        throw Error::input("rect with round corners: a path is wanted");
+        throw Error::input(
+            "rect: round corners are not supported; convert the rectangle to a path");
       const double x = number(node, "x"), y = number(node, "y"), w = number(node, "width"),
                    h = number(node, "height");
       add_corners({at(x, y), at(x + w, y), at(x + w, y + h), at(x, y + h)}, true);
@@ -198,8 +201,8 @@ class Reader {
   void put(Path path) {
     if (path.curves.empty()) return;
     n_ += path.curves.size();
-    if (n_ > kMostCurves)
-      throw Error::input("more than " + std::to_string(kMostCurves) + " lines and arcs");
+    if (n_ > kMaxCurves)
+      throw Error::input("it contains more than " + std::to_string(kMaxCurves) + " lines and arcs");
     drawing_.paths.push_back(std::move(path));
   }
 
@@ -223,7 +226,8 @@ Page page_of(xmlNode* svg) {
   if (box) {
     const std::vector<double> v = numbers(*box);
     if (v.size() != 4 || !(v[2] > 0 && v[3] > 0))
-      throw Error::input("viewBox = '" + *box + "': x, y, width, height of the page");
+      throw Error::input("viewBox = '" + *box +
+                         "': it must contain x, y, and the positive width and height of the page");
     page = {v[0], v[1], v[2], v[3], {}};
   } else {
     page.width = w.value;
@@ -244,19 +248,19 @@ Page page_of(xmlNode* svg) {
 }  // namespace
 
 Drawing read_svg(const std::string& text) {
-  constexpr size_t kLargest = 1u << 30;
-  if (text.size() > kLargest) throw Error::input("more than 1 GB");
+  constexpr size_t kMaxBytes = 1u << 30;
+  if (text.size() > kMaxBytes) throw Error::input("the file is larger than 1 GB");
   const std::unique_ptr<xmlDoc, void (*)(xmlDoc*)> document(
       xmlReadMemory(text.data(), static_cast<int>(text.size()), nullptr, nullptr,
                     XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING),
       xmlFreeDoc);
   if (!document) {
     const xmlError* error = xmlGetLastError();
-    throw Error::input("this is no XML" +
+    throw Error::input("this is not an XML file" +
                        (error != nullptr ? ": line " + std::to_string(error->line) : ""));
   }
   xmlNode* svg = xmlDocGetRootElement(document.get());
-  if (svg == nullptr || name_of(svg) != "svg") throw Error::input("this is no SVG file");
+  if (svg == nullptr || name_of(svg) != "svg") throw Error::input("this is not an SVG file");
   const Page page = page_of(svg);
   // On the page y points downwards.
   Reader reader(Geom::Affine(1, 0, 0, -1, -page.x, page.y + page.height));

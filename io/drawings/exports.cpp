@@ -155,7 +155,7 @@ std::vector<Component> read_components_csv(const std::string& path) {
     throw Error::input(path + ":" + std::to_string(line) + ": " + what);
   };
   if (!std::equal(table.columns.begin(), table.columns.end(), kColumns.begin(), kColumns.end()))
-    fail(1, "the header of components is " + header);
+    fail(1, "the header of a file of components must be " + header);
   std::vector<Component> out;
   for (size_t r = 0; r < table.n_rows(); ++r) {
     std::array<double, Component::kParameters> values{};
@@ -164,13 +164,13 @@ std::vector<Component> read_components_csv(const std::string& path) {
       const std::string& cell = row[n];
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[n]);
       if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(values[n]))
-        fail(r + 2, kColumns[n] + " = '" + cell + "' is not a number");
+        fail(r + 2, kColumns[n] + " = '" + cell + "' is not a finite number");
       if (n != 0 && n != 1 && n != 3 && !(values[n] > 0))
         fail(r + 2, kColumns[n] + " = " + cell + ": lengths and thicknesses are positive [m]");
     }
     out.push_back(Component::from_parameters(values.data()));
   }
-  if (out.empty()) fail(2, "one component or more");
+  if (out.empty()) fail(2, "the file must contain at least one component");
   return out;
 }
 

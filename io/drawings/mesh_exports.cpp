@@ -55,7 +55,7 @@ std::string name_of(const std::string& words) {
 /// accuracy: the compliance has an error of 0.6 % at a ten thousandth and 2e-5 at a hundredth
 /// (rotating plate, whose smallest side is a thousandth of the median).
 double slice_of(const PlateModel& model) {
-  constexpr double kPart = 0.2, kLeast = 0.01;
+  constexpr double kLengthFraction = 0.2, kMinLength = 0.01;
   std::vector<double> sides;
   for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
     const auto [a, b, c] = model.mesh.corners(t);
@@ -64,7 +64,7 @@ double slice_of(const PlateModel& model) {
   const double smallest = std::ranges::min(sides);
   const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
   std::ranges::nth_element(sides, middle);
-  return std::min(model.thickness, std::max(kPart * smallest, kLeast * *middle));
+  return std::min(model.thickness, std::max(kLengthFraction * smallest, kMinLength * *middle));
 }
 
 /// Appends one step with a load.
@@ -94,13 +94,14 @@ void write_inp(const std::string& path, const PlateModel& model) {
   for (const std::size_t t : triangles)
     for (const int node : mesh.triangles[t]) used[static_cast<std::size_t>(node)] = 1;
   const double slice = slice_of(model);
-  std::string out = "** A plate of plane stress, thickness ";
+  std::string out = "** Plate in plane stress; its thickness is ";
   out += short_text(model.thickness);
-  out += "; metres, newtons, pascals.\n";
+  out += " m. Units: m, N, Pa.\n";
   if (slice < model.thickness)
     out +=
-        "** Elements are a slice of it with its part of the forces: displacements and stresses "
-        "are those of\n** the plate, also where solids are made of plane elements.\n";
+        "** The elements are thinner than the plate, and the forces are reduced by the same "
+        "factor.\n** The displacements and stresses are those of the plate, also if solids replace "
+        "the plane\n** elements.\n";
   out += "*NODE, NSET=NODES\n";
   for (std::size_t k = 0; k < used.size(); ++k)
     if (used[k])
@@ -122,9 +123,9 @@ void write_inp(const std::string& path, const PlateModel& model) {
 
 void write_msh(const std::string& path, const PartMesh& mesh) {
   std::string out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n";
-  out += to_text(mesh.n_pieces);
+  out += to_text(mesh.n_connected_regions);
   out += "\n";
-  for (int piece = 0; piece < mesh.n_pieces; ++piece) {
+  for (int piece = 0; piece < mesh.n_connected_regions; ++piece) {
     const std::string name = number(piece);
     out.append("2 ").append(name).append(" \"piece_").append(name).append("\"\n");
   }
@@ -143,7 +144,8 @@ void write_msh(const std::string& path, const PartMesh& mesh) {
 }
 
 void write_geo(const std::string& path, std::span<const Region> regions, double size) {
-  std::string out = "// The outline of a design, in metres.\nsize = " + to_text(size) + ";\n";
+  std::string out =
+      "// This is the outline of a design, in metres.\nsize = " + to_text(size) + ";\n";
   std::size_t points = 0, loops = 0, surfaces = 0;
   const auto add_loop = [&](const std::vector<Vec2>& ring) {
     const std::size_t first = points + 1;

@@ -38,7 +38,7 @@ namespace {
 constexpr double kScale = 1000;
 
 /// Tolerance for ends of curves on their vertices [mm].
-constexpr double kNear = 1e-6;
+constexpr double kDistanceTolerance = 1e-6;
 
 gp_Pnt point_of(const Vec2& p) { return {kScale * p.x(), kScale * p.y(), 0}; }
 
@@ -56,7 +56,7 @@ TopoDS_Wire wire_of(const CurveRing& ring) {
   const BRep_Builder builder;
   std::vector<TopoDS_Vertex> ends(ring.size());
   for (std::size_t k = 0; k < ring.size(); ++k)
-    builder.MakeVertex(ends[k], point_of(ring[k].from), kNear);
+    builder.MakeVertex(ends[k], point_of(ring[k].from), kDistanceTolerance);
   BRepBuilderAPI_MakeWire wire;
   for (std::size_t k = 0; k < ring.size(); ++k)
     wire.Add(edge_of(ring[k], ends[k], ends[(k + 1) % ring.size()]));
@@ -113,12 +113,12 @@ std::string write_step(const std::string& path, std::span<const CurvedRegion> re
     const BRep_Builder builder;
     builder.MakeCompound(all);
     for (const CurvedRegion& r : regions) builder.Add(all, solid_of(r, thickness));
-    if (!BRepCheck_Analyzer(all).IsValid()) return "its faces do not bound a solid";
+    if (!BRepCheck_Analyzer(all).IsValid()) return "the faces of the solid are not closed";
     text = step_text(all);
   } catch (const Standard_Failure& failure) {
     return failure.GetMessageString();
   }
-  if (text.empty()) return "it was not transferred";
+  if (text.empty()) return "the solid could not be written";
   write_file(path, text);
   return "";
 }

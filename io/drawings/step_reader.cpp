@@ -77,9 +77,7 @@ std::vector<Level> levels_of(const TopoDS_Shape& shape) {
     if (surface.GetType() == GeomAbs_Plane && is_along_z(surface.Plane().Axis().Direction()))
       out.push_back({surface.Plane().Location().Z(), face});
     else if (!is_wall(surface))
-      throw Error::input(
-          "a face of it lies neither across z nor along z: a plate is extruded "
-          "along z");
+      throw Error::input("a face is neither normal nor parallel to z; a plate is extruded along z");
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const Level& a, const Level& b) { return a.z < b.z; });
@@ -97,23 +95,25 @@ int count(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
 TopoDS_Face outline_face(const TopoDS_Shape& shape, double thickness) {
   const int n_solids = count(shape, TopAbs_SOLID);
   const std::vector<Level> levels = levels_of(shape);
-  const std::string wanted = "one solid that is extruded along z, or one face across z, is wanted";
+  const std::string wanted =
+      "it must contain one solid that is extruded along z, or one face normal to z";
   if (n_solids > 1)
-    throw Error::input("it has " + std::to_string(n_solids) + " solids: " + wanted +
-                       "; a drawing (.dxf) may have several pieces");
+    throw Error::input("it contains " + std::to_string(n_solids) + " solids; " + wanted +
+                       "; a drawing (.dxf) may contain several pieces");
   if (n_solids == 0) {
     const int n_faces = count(shape, TopAbs_FACE);
     if (n_faces != 1 || levels.size() != 1)
-      throw Error::input("it has no solid and " + std::to_string(n_faces) + " faces, " +
-                         std::to_string(levels.size()) + " of them across z: " + wanted);
+      throw Error::input("it contains no solid and " + std::to_string(n_faces) + " faces, " +
+                         std::to_string(levels.size()) + " of them normal to z; " + wanted);
     return levels.front().face;
   }
   if (levels.size() != 2)
     throw Error::input("its solid has " + std::to_string(levels.size()) +
-                       " faces across z where a plate has two, below and above: " + wanted);
+                       " faces normal to z, but a plate has two, below and above; " + wanted);
   const double height = kUnit * (levels[1].z - levels[0].z);
   if (std::abs(height - thickness) > 1e-3 * thickness)
-    throw Error::input("its solid is " + to_text(height, 6) + " m thick along z, the body " +
+    throw Error::input("its solid is " + to_text(height, 6) +
+                       " m thick along z, but the thickness of the body is " +
                        to_text(thickness, 6) + " m");
   return levels.front().face;
 }
@@ -139,7 +139,7 @@ drawing::Drawing drawing_of(const TopoDS_Face& face) {
     for (BRepTools_WireExplorer edges(TopoDS::Wire(wires.Current()), face); edges.More();
          edges.Next())
       path.curves.push_back(curve_of(edges.Current()));
-    if (path.curves.empty()) throw Error::input("a ring of its outline has no edges");
+    if (path.curves.empty()) throw Error::input("a closed curve of its outline has no edges");
   }
   return out;
 }
@@ -148,10 +148,11 @@ TopoDS_Shape shape_of(const std::string& path) {
   // Without this line the library prints its progress to standard output.
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   STEPControl_Reader reader;
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw Error::input("this is no STEP file");
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
+    throw Error::input("this is not a STEP file");
   reader.TransferRoots();
   const TopoDS_Shape shape = reader.OneShape();
-  if (shape.IsNull()) throw Error::input("no solid and no face is in it");
+  if (shape.IsNull()) throw Error::input("it contains no solid and no face");
   return shape;
 }
 

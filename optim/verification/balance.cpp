@@ -28,7 +28,8 @@ PartBalance::PartBalance(const PartMesh& mesh, std::array<PinNodes, 2> pins)
       balancing_(MatrixXd::Zero(rigid_.rows(), 3)),
       pins_(std::move(pins)) {
   const Vec2 line = pins_[1].pin.center - pins_[0].pin.center;
-  if (!(line.norm() > 0)) throw Error::input("verification: both pins of a link are at one place");
+  if (!(line.norm() > 0))
+    throw Error::input("verification: both pins of a link are at the same location");
   across_ = Vec2(-line.y(), line.x()).normalized();
   for (std::size_t p = 0; p < 2; ++p)
     for (const auto& [node, share] : pins_[p].shares) {

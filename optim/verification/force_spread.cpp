@@ -9,12 +9,12 @@ namespace {
 /// @return true if this half can carry the force
 bool add_bearing(const ForceSpread& load, std::span<const Vec2> points,
                  std::span<const double> shares, std::vector<Vec2>& out) {
-  constexpr double kLeast = 1e-6;  // smallest det / trace² of the loaded half of the rim
+  constexpr double kMinRatio = 1e-6;  // smallest det / trace² of the loaded half of the rim
   const auto normal = [&](size_t k) -> Vec2 { return (points[k] - load.center).normalized(); };
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (size_t k = 0; k < points.size(); ++k)
     if (const Vec2 n = normal(k); n.dot(load.force) > 0) sum += shares[k] * n * n.transpose();
-  if (sum.determinant() <= kLeast * sum.trace() * sum.trace()) return false;
+  if (sum.determinant() <= kMinRatio * sum.trace() * sum.trace()) return false;
   const Vec2 a = sum.inverse() * load.force;
   for (size_t k = 0; k < points.size(); ++k)
     if (const Vec2 n = normal(k); n.dot(load.force) > 0) out[k] += shares[k] * n.dot(a) * n;

@@ -15,7 +15,7 @@ namespace {
 bool runs_along(const Segment& line, std::span<const Region> regions, double small) {
   const double length = (line.b - line.a).norm();
   const Vec2 along = (line.b - line.a) / length;
-  const auto looks = [&](const std::vector<Vec2>& ring) {
+  const auto analyses = [&](const std::vector<Vec2>& ring) {
     for (std::size_t k = 0; k < ring.size(); ++k) {
       const Vec2 u = ring[k] - line.a, v = ring[(k + 1) % ring.size()] - line.a;
       const auto off = [&](const Vec2& p) {
@@ -29,7 +29,7 @@ bool runs_along(const Segment& line, std::span<const Region> regions, double sma
     return false;
   };
   return std::any_of(regions.begin(), regions.end(), [&](const Region& r) {
-    return looks(r.outer) || std::any_of(r.holes.begin(), r.holes.end(), looks);
+    return analyses(r.outer) || std::any_of(r.holes.begin(), r.holes.end(), analyses);
   });
 }
 
@@ -110,7 +110,7 @@ LoadedMesh::LoadedMesh(const PartMesh& mesh, const fem::PlaneSection& section, c
   sort_loads();
   find_locations();
   hold_at_pins();
-  omit_unsupported_pieces();
+  omit_unsupported_regions();
   find_edge();
   if (unsupported_load_ < 0) find_balance();
   if (unsupported_load_ < 0)
@@ -257,11 +257,11 @@ bool LoadedMesh::is_held(int piece) const {
   return values[0] > 1e-12 * values[2];
 }
 
-void LoadedMesh::omit_unsupported_pieces() {
-  std::vector<char> unsupported(static_cast<std::size_t>(mesh_.n_pieces), 0);
-  for (int piece = 0; piece < mesh_.n_pieces; ++piece)
+void LoadedMesh::omit_unsupported_regions() {
+  std::vector<char> unsupported(static_cast<std::size_t>(mesh_.n_connected_regions), 0);
+  for (int piece = 0; piece < mesh_.n_connected_regions; ++piece)
     unsupported[static_cast<std::size_t>(piece)] = !is_held(piece);
-  n_omitted_pieces_ = static_cast<int>(std::count(unsupported.begin(), unsupported.end(), 1));
+  n_omitted_regions_ = static_cast<int>(std::count(unsupported.begin(), unsupported.end(), 1));
   std::vector<char> carries(mesh_.points.size(), 0);
   omitted_.resize(mesh_.triangles.size());
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {

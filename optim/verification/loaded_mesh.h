@@ -43,7 +43,7 @@ class LoadedMesh {
   /// Returns 1 for triangles that take no part in the statics, 0 for the others (n_triangles).
   const std::vector<signed char>& omitted() const { return omitted_; }
   /// Returns the number of connected regions that take no part in the statics.
-  int n_omitted_pieces() const { return n_omitted_pieces_; }
+  int n_omitted_regions() const { return n_omitted_regions_; }
   /// Returns the index in Loads::loads of the first load that acts on unsupported material, or -1.
   int unsupported_load() const { return unsupported_load_; }
 
@@ -66,7 +66,7 @@ class LoadedMesh {
   void find_locations();
   void hold_at_pins();
   void find_balance();
-  void omit_unsupported_pieces();
+  void omit_unsupported_regions();
   void find_edge();
   double held_end_stretch(std::size_t row) const;
   std::vector<std::pair<int, Vec2>> forces_at_nodes(const Force& force) const;
@@ -85,7 +85,7 @@ class LoadedMesh {
   std::vector<int> edge_;  // nodes on the held edge that take part, by ascending y
   std::vector<fem::NodeSpring> springs_;
   std::vector<signed char> omitted_;
-  int n_omitted_pieces_ = 0, unsupported_load_ = -1;
+  int n_omitted_regions_ = 0, unsupported_load_ = -1;
   std::optional<PartBalance> balance_;
   std::unique_ptr<fem::TrianglePlate> plate_;
 };

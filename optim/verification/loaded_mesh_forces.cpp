@@ -99,7 +99,7 @@ void LoadedMesh::add_inertia(std::span<const int> rows, MatrixXd& at_nodes) cons
     const fem::T6 element(mesh_.corners(t));
     const double mass = section_.density * section_.thickness * element.area();
     for (const fem::WeightedPoint& w : fem::six_points()) {
-      const Vec2 p = element.place(w.at);
+      const Vec2 p = element.position(w.at);
       const double x = std::clamp((p.x() - g.x0) / g.dx(), 0.0, double(g.nx)),
                    y = std::clamp((p.y() - g.y0) / g.dy(), 0.0, double(g.ny));
       const int i = std::min(static_cast<int>(x), g.nx - 1),

@@ -21,7 +21,7 @@ constexpr double kReentrant = 200 * std::numbers::pi / 180, kAtCorners = 0.25;
 constexpr Eigen::Index kBlock = 16;  // number of loads whose stresses are stored at a time
 // The energy error of a triangle decreases like h^6: the squared strain error like h^4, the area
 // like h^2. One refinement reduces a side to no less than a quarter.
-constexpr double kPower = 1. / 6, kLeastCut = 0.25;
+constexpr double kPower = 1. / 6, kMinCut = 0.25;
 
 Box bounds_of(std::span<const Region> regions) {
   Box out{Vec2::Constant(INFINITY), Vec2::Constant(-INFINITY)};
@@ -51,7 +51,7 @@ struct MeshResult {
 class OutlineVerifier {
  public:
   OutlineVerifier(std::span<const Region> regions, const fem::PlaneSection& section,
-                  const Loads& loads, const Settings& settings)
+                  const Loads& loads, const VerificationSettings& settings)
       : section_(section),
         loads_(loads),
         settings_(settings),
@@ -105,7 +105,7 @@ class OutlineVerifier {
 
   fem::PlaneSection section_;
   const Loads& loads_;
-  Settings settings_;
+  VerificationSettings settings_;
   double small_;
   std::vector<Location> locations_;
   PartMesher mesher_;
@@ -249,8 +249,8 @@ void OutlineVerifier::keep(const LoadedMesh& mesh, MeshResult& now, double error
   out_.largest_at = now.largest.at;
   out_.largest_load =
       now.largest_row < 0 ? -1 : mesh.order()[static_cast<std::size_t>(now.largest_row)];
-  out_.n_pieces = out_.mesh.n_pieces;
-  out_.n_omitted_pieces = mesh.n_omitted_pieces();
+  out_.n_connected_regions = out_.mesh.n_connected_regions;
+  out_.n_omitted_regions = mesh.n_omitted_regions();
   out_.meshes = meshes;
   out_.omitted_triangles = mesh.omitted();
   out_.stress = std::move(now.stress);
@@ -296,7 +296,7 @@ void OutlineVerifier::refine(const MeshResult& now, double error) {
     const double side = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     // The requested size is at most 0.9 of the side, because a side of the allowed size is not
     // split.
-    const double size = side * std::clamp(std::pow(part / own, kPower), kLeastCut, 0.9);
+    const double size = side * std::clamp(std::pow(part / own, kPower), kMinCut, 0.9);
     sizes_.refine((a + b + c) / 3, 0.5 * side, size);
   }
 }
@@ -305,8 +305,8 @@ OutlineVerification OutlineVerifier::unsupported(const LoadedMesh& mesh) {
   out_.compliance = INFINITY;
   out_.unsupported_load = loads_.loads[static_cast<std::size_t>(mesh.unsupported_load())].name;
   out_.converged = true;
-  out_.n_pieces = out_.mesh.n_pieces;
-  out_.n_omitted_pieces = mesh.n_omitted_pieces();
+  out_.n_connected_regions = out_.mesh.n_connected_regions;
+  out_.n_omitted_regions = mesh.n_omitted_regions();
   out_.omitted_triangles = mesh.omitted();
   return std::move(out_);
 }
@@ -315,7 +315,7 @@ OutlineVerification OutlineVerifier::unsupported(const LoadedMesh& mesh) {
 
 OutlineVerification verify_outline(std::span<const Region> regions,
                                    const fem::PlaneSection& section, const Loads& loads,
-                                   const Settings& settings) {
+                                   const VerificationSettings& settings) {
   if (loads.loads.empty()) throw Error::input("verification: there are no loads");
   if (regions.empty()) throw Error::numerical("verification: there is no material");
   return OutlineVerifier(regions, section, loads, settings).run();

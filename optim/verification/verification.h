@@ -13,7 +13,7 @@
 namespace flexmorph::verification {
 
 /// Settings of the verification of an outline.
-struct Settings {
+struct VerificationSettings {
   double tolerance = 0.005;  ///< Target for the estimated relative error of the compliance [-].
   double size = 0;           ///< Largest size of the first triangles [m].
 
@@ -60,12 +60,12 @@ struct OutlineVerification {
 
   /// Largest von Mises stress of all loads, averaged at nodes, away from locations [Pa].
   double largest_stress = 0;
-  Vec2 largest_at{0, 0};     ///< Position of the largest stress [m].
-  int largest_load = -1;     ///< Index in Loads::loads of the load with the largest stress, or -1.
-  int n_pieces = 0;          ///< Number of connected regions of the mesh.
-  int n_omitted_pieces = 0;  ///< Number of unsupported connected regions, which are left out.
-  int meshes = 0;            ///< Number of meshes that were solved.
-  PartMesh mesh;             ///< Last mesh.
+  Vec2 largest_at{0, 0};  ///< Position of the largest stress [m].
+  int largest_load = -1;  ///< Index in Loads::loads of the load with the largest stress, or -1.
+  int n_connected_regions = 0;  ///< Number of connected regions of the mesh.
+  int n_omitted_regions = 0;    ///< Number of unsupported connected regions, which are left out.
+  int meshes = 0;               ///< Number of meshes that were solved.
+  PartMesh mesh;                ///< Last mesh.
   std::vector<signed char> omitted_triangles;  ///< Value 1 for triangles left out (n_triangles).
 
   /// Stress averaged at nodes under the load with the largest compliance (3 x n_nodes): σ₁₁, σ₂₂,
@@ -102,6 +102,6 @@ struct OutlineVerification {
 ///         the static analysis fails.
 OutlineVerification verify_outline(std::span<const Region> regions,
                                    const fem::PlaneSection& section, const Loads& loads,
-                                   const Settings& settings);
+                                   const VerificationSettings& settings);
 
 }  // namespace flexmorph::verification

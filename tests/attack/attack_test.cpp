@@ -1,11 +1,11 @@
-// What comes in from outside, changed at random: it is read and built, or refused with an Error;
-// nothing else may be thrown, nothing may crash, and nothing goes on for ever: each input has a
-// limit of processor time that is far above what any takes, and more for the elements of its
-// meshes.
+// Shows that inputs which are changed at random are read and built, or refused with an Error: no
+// other exception, no crash, and no endless computation. Each input has a limit of processor time
+// far above that of any regular input, which grows with the elements of its meshes.
 //
-//   FLEXMORPH_ATTACKS=100000 nice build/tests/attack/attack_tests   cases, default 400; of others
-//                                                                   five times as many
-//   FLEXMORPH_SEED=2                                                others of them, default 1
+//   FLEXMORPH_ATTACKS=100000 nice build/tests/attack/attack_tests   number of cases, default 400;
+//                                                                   of other inputs five times as
+//                                                                   many
+//   FLEXMORPH_SEED=2                                                seed of the changes, default 1
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,15 +36,15 @@ using testing::Mutations;
 using testing::number_of;
 
 constexpr double kSlow = kSanitized ? 50 : 1;
-constexpr double kLongest = 10 * kSlow;  // of processor time, for one input [s]
-// And for each element that it asks for: they are built   [s].
+constexpr double kLongest = 10 * kSlow;  // processor time for one input [s]
+// Additional processor time for each element of a requested mesh, because elements are built [s].
 constexpr double kPerElement = 2e-3 * kSlow;
-// What malloc keeps of the largest inputs varies by this much; a leak of 100 bytes an input shows
-// in 1e6 of them [bytes].
-// The address sanitizer keeps 256 MB of what was freed, and looks for leaks itself.
+// Allowed growth of memory in use [bytes]: what malloc keeps of the largest inputs varies by this
+// much; a leak of 100 bytes per input appears after 1e6 inputs. The address sanitizer keeps 256 MB
+// of freed memory, and detects leaks by itself.
 constexpr double kGrowth = kSanitized ? 1e9 : 100e6;
 
-/// Memory in use [bytes].
+/// Returns the memory in use [bytes].
 double memory_in_use() {
   std::ifstream status("/proc/self/statm");
   double mapped = 0, used = 0;
@@ -52,10 +52,11 @@ double memory_in_use() {
   return used * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// Hands over many inputs, as texts and (where `ending` is not empty) as files.
+/// Tests many inputs, as texts and (if `ending` is not empty) as files.
 class Attack : public ::testing::Test {
  protected:
-  /// @param elements  of the meshes that an input asks for; asked only of one that takes long
+  /// @param elements  returns the elements of the meshes that an input requests; called only for an
+  /// input that takes long
   template <class Make, class Try>
   void run(const std::string& ending, size_t share, const Make& make, const Try& attempt,
            const std::function<double(const std::string&)>& elements = {}) {
@@ -64,7 +65,7 @@ class Attack : public ::testing::Test {
     size_t accepted = 0, refused = 0;
     double before = 0, longest = 0;
     for (size_t i = 0; i < n; ++i) {
-      if (i == n / 10) before = memory_in_use();  // what the first ones brought in stays
+      if (i == n / 10) before = memory_in_use();  // memory of the first inputs stays in use
       Mutations random(1'000'003 * seed + i);
       const std::string text = make(random);
       const std::string file = ending.empty() ? "" : scratch_.write("input" + ending, text);
@@ -90,7 +91,8 @@ class Attack : public ::testing::Test {
         "grown by %.1f MB since a tenth of them\n",
         n, accepted, refused, longest, grown / 1e6);
     EXPECT_LT(grown, kGrowth) << "memory leaks";
-    // Attacks that never get through, or always, look at one side of the checks only.
+    // An attack whose inputs are always refused, or always accepted, tests only one side of the
+    // checks.
     EXPECT_GT(accepted, n / 100);
     EXPECT_GT(refused, n / 100);
   }
@@ -132,7 +134,7 @@ TEST_F(Attack, Cases) {
       });
 }
 
-// What `check` does beyond reading: bodies, joints, the start; a part of the cases that are read.
+// Tests what `check` does after reading: bodies, joints, the start.
 TEST_F(Attack, CasesAsCheckBuildsThem) {
   const std::vector<std::string> cases = shipped_cases();
   run(
@@ -151,7 +153,8 @@ TEST_F(Attack, CasesAsCheckBuildsThem) {
       });
 }
 
-// What mutations have found: a crash, gigabytes for a look, drives that were followed without end.
+// Regression test for errors found by mutations: a crash, gigabytes of memory for a check, drives
+// that were followed endlessly.
 TEST(Found, InputsAreReadOrRefused) {
   const std::vector<std::array<std::string, 2>> found = {
       {"l_bracket", "domain.polygon=[0.0,0.0, 1.0,0.0, 1.0,0.4, 0.4,0.4, 0.4,1.0, 0.0,1e308]"},

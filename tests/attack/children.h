@@ -13,9 +13,9 @@
 
 namespace flexmorph::testing {
 
-/// Waits until no process fills a folder in that of a killed study: the children of the study end
-/// with it, a moment later. After 30 s every process that descends from this test is killed, and
-/// the test fails.
+/// Waits until no process fills a subfolder of the folder of a killed study, because its child
+/// processes end slightly later. After 30 s all descendants of this test are killed, and the test
+/// fails.
 inline void wait_for_children(const std::string& folder) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + std::chrono::seconds(30);

@@ -1,5 +1,5 @@
-// Disks that fill up, folders that are removed, cannot be written, belong to somebody else: a run
-// ends with one sentence, exit code 2 or 3, and what it has written is whole.
+// Shows that a run ends with one sentence and exit code 2 or 3, and leaves complete files, if its
+// disk becomes full or its folder is removed, cannot be written, or belongs to another user.
 //
 //   FLEXMORPH_DISKS=20 build/tests/attack/attack_tests --gtest_filter='Disk.*'   sizes, default 1
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using Words = std::vector<std::string>;
 
 constexpr double kMega = 1e6;
 
-/// A pendulum that takes a second or so.
+/// A pendulum that is simulated for about a second.
 const char* const kPendulum =
     "gravity = [0.0, -9.81]\n[time]\nend = 1.0\nstep = 2e-4\n"
     "[[rigid_body]]\nname = \"rod\"\nmass = 1.0\nsize = [1.0, 0.1]\n"
@@ -35,11 +35,11 @@ const char* const kPendulum =
 
 struct Kind {
   const char* name;
-  Words words;          ///< of the command, without the folder
-  const char* growing;  ///< a file in the folder that shows that it is on its way
+  Words words;          ///< Words of the command, without the folder.
+  const char* growing;  ///< A file in the folder that shows that the run has begun.
 };
 
-/// A motion, a design in a motion, a path of equilibria, a design at rest, and a study.
+/// Returns a motion, a design in a motion, a static path, a static design, and a study.
 std::vector<Kind> kinds(const std::string& pendulum) {
   return {{"motion", {"run", pendulum}, "motion.csv"},
           {"design",
@@ -63,7 +63,7 @@ Words command(const Kind& kind, const std::string& folder) {
   return out;
 }
 
-/// Waits until a file is longer than so many bytes, or the process is over.
+/// Waits until a file is longer than a number of bytes, or the process has ended.
 void wait_for(const std::string& path, size_t bytes, const ChildProgram& process) {
   std::error_code none;
   for (int k = 0; k < 60'000 && process.runs(); ++k) {
@@ -72,7 +72,7 @@ void wait_for(const std::string& path, size_t bytes, const ChildProgram& process
   }
 }
 
-/// Exit code 2 or 3 with words, no crash, no hang. @return the code.
+/// Expects exit code 2 or 3 with a message, no crash and no time-out. @returns the code
 int refused(const ChildEnd& end, const std::string& what) {
   EXPECT_FALSE(end.timed_out) << what;
   EXPECT_TRUE(end.code == 2 || end.code == 3)
@@ -83,7 +83,7 @@ int refused(const ChildEnd& end, const std::string& what) {
   return end.code;
 }
 
-/// The same, or it fitted.
+/// Expects a refusal, or a complete run. @returns the exit code
 int refused_or_whole(const ChildEnd& end, const std::string& what) {
   if (end.code == 0 || end.code == 5) return end.code;
   return refused(end, what);
@@ -108,7 +108,7 @@ TEST(Disk, FillsUpAtAnyMoment) {
       const testing::SmallDisk disk(scratch / "disk", size + 300 * kMega);
       const std::string folder = scratch / "disk/run";
       on_disk = disk.mounted();
-      // Without a disk of its own: no file may be larger.
+      // Without a disk of its own the size of files is limited instead.
       ChildProgram process(command(kind, folder), scratch / "",
                            {.file_size = on_disk ? 0 : bytes / 4 + 1});
       if (on_disk) {
@@ -163,7 +163,7 @@ TEST(Disk, RemovedFoldersEndTheRun) {
     ASSERT_TRUE(process.runs()) << kind.name;
     std::error_code none;
     for (int k = 0; k < 100 && fs::exists(folder, none); ++k) fs::remove_all(folder, none);
-    kill(process.pid(), SIGTERM);  // motions and paths would go on in files without names
+    kill(process.pid(), SIGTERM);  // motions and paths would continue in removed files
     EXPECT_EQ(refused(process.end(), kind.name), 3);
     EXPECT_FALSE(fs::exists(folder)) << kind.name;
   }
@@ -200,10 +200,10 @@ TEST(Disk, FoldersOfTheLivingAreTheirs) {
     const std::string folder = scratch / ("run of " + std::string(kind.name));
     std::optional<ChildProgram> process(std::in_place, command(first, folder), scratch / "");
     wait_for(folder + (study ? "/step=2e-6/motion.csv" : "/motion.csv"), 500, *process);
-    kill(process->pid(), SIGSTOP);  // it lives however fast the machine is
+    kill(process->pid(), SIGSTOP);  // it must still exist, however fast the machine is
     const ChildEnd end = ChildProgram(command(kind, folder), scratch / "second").end();
     EXPECT_EQ(refused(end, kind.name), 2);
-    EXPECT_TRUE(contains(end.err, "is filling it")) << end.err;
+    EXPECT_TRUE(contains(end.err, "is writing to it")) << end.err;
     EXPECT_TRUE(process->runs());
     process.reset();
     testing::wait_for_children(folder);  // before their files are removed

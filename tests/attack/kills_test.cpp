@@ -1,10 +1,11 @@
-// Runs and studies are killed at random moments (SIGKILL), again and again, and resumed: they come
-// to what those come to that nobody disturbs, byte for byte, and their files can be read all the
-// while.
+// Shows that runs and studies that are killed at random moments (SIGKILL), repeatedly, and resumed
+// have the results of undisturbed ones byte for byte, and that their files are readable at any
+// time.
 //
-//   FLEXMORPH_KILLS=200        kills of shortened cases, evenly spread over them; 6 without. Given,
-//                              runs are also killed at every call of their final writing
-//   FLEXMORPH_WHOLE_KILLS=10   kills of whole runs of rotating_plate_v01; none without
+//   FLEXMORPH_KILLS=200        number of kills of shortened cases, distributed evenly over them;
+//                              default 6. If set, runs are also killed at every system call of
+//                              their final writing.
+//   FLEXMORPH_WHOLE_KILLS=10   number of kills of full runs of rotating_plate_v01; default none
 //   FLEXMORPH_SEED=1
 #include <atomic>
 #include <chrono>
@@ -29,7 +30,7 @@ int number_from(const char* name, int otherwise) {
   return said ? std::atoi(said) : otherwise;
 }
 
-/// Looks at a folder all the time, while it lives.
+/// Reads all files of a folder repeatedly during the lifetime of the object.
 class Reader {
  public:
   explicit Reader(std::string folder) : folder_(std::move(folder)), thread_([this] { read(); }) {}
@@ -40,19 +41,20 @@ class Reader {
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
-  int looks() const { return looks_; }
-  int torn() const { return torn_; }  ///< looks at which a file was not whole for an instant
+  int analyses() const { return analyses_; }
+  /// Number of analyses in which a file was incomplete for an instant.
+  int cut() const { return cut_; }
 
  private:
   void read() {
-    for (; !ends_; ++looks_) {
-      // Of a row across two pages of memory the system shows the first part an instant before the
-      // second: what is broken is so a moment later, too.
+    for (; !ends_; ++analyses_) {
+      // If a row lies on two pages of memory, the system shows its first part an instant before the
+      // second. A file that is really broken is still broken a moment later.
       const Words now = unreadable(folder_);
       if (!now.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
       for (const std::string& each : now.empty() ? now : unreadable(folder_))
         if (std::find(now.begin(), now.end(), each) != now.end()) found_.push_back(each);
-      torn_ += !now.empty();
+      cut_ += !now.empty();
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   }
@@ -60,11 +62,11 @@ class Reader {
   std::string folder_;
   std::vector<std::string> found_;
   std::atomic<bool> ends_ = false;
-  std::atomic<int> looks_ = 0, torn_ = 0;
-  std::thread thread_;  // last: it uses the others
+  std::atomic<int> analyses_ = 0, cut_ = 0;
+  std::thread thread_;  // last, because it uses the other members
 };
 
-/// What is killed: a run, or a study, which goes on by itself.
+/// The command that is killed: a run, or a study, which resumes by itself.
 struct Victim {
   const char* name;
   std::string path;
@@ -72,7 +74,7 @@ struct Victim {
   bool is_study() const { return !vary.empty(); }
 
   Words words(const std::string& folder, bool resume) const {
-    if (!is_study()) return words_of(path, folder, changes, resume);
+    if (!is_study()) return text_of(path, folder, changes, resume);
     Words out = {"sweep", path, "-o", folder, "--set", "expect="};
     for (const std::string& change : changes) out.insert(out.end(), {"--set", change});
     for (const std::string& key : vary) out.insert(out.end(), {"--vary", key});
@@ -80,7 +82,7 @@ struct Victim {
   }
 };
 
-/// @returns kills
+/// @returns the number of kills
 int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
   const Scratch scratch;
   const std::string whole = scratch / "whole", folder = scratch / "out";
@@ -89,7 +91,7 @@ int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
   const std::chrono::duration<double> took = Clock::now() - begin;
   EXPECT_TRUE(code == 0 || code == kTooFew) << v.name << " " << code;
   const auto undisturbed = lasting(whole);
-  int n = 0, ends = 0, looks = 0, torn = 0;
+  int n = 0, ends = 0, analyses = 0, cut = 0;
   while (n < kills && !::testing::Test::HasFailure()) {
     std::optional<Reader> reader(std::in_place, folder);
     bool killed = true;
@@ -105,7 +107,7 @@ int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
       if (!killed) {
         EXPECT_EQ(ended.code, code) << v.name << " " << ended.err;
       }
-      if (engine() % 2 == 0) break;  // killed once more, or resumed
+      if (engine() % 2 == 0) break;  // kill it again, or resume it
     }
     if (killed) {
       const Ended ended = flexmorph(scratch, v.words(folder, true));
@@ -113,19 +115,19 @@ int kill_and_resume(const Victim& v, int kills, std::mt19937& engine) {
     }
     expect_same(lasting(folder), undisturbed);
     ++ends;
-    looks += reader->looks();
-    torn += reader->torn();
-    reader.reset();  // what it found fails
+    analyses += reader->analyses();
+    cut += reader->cut();
+    reader.reset();  // reports its findings as failures
     fs::remove_all(folder);
   }
-  std::cout << "  " << v.name << ": " << n << " kills, " << ends << " comparisons, " << looks
-            << " looks at all files (" << torn << " saw half a row for an instant), undisturbed "
+  std::cout << "  " << v.name << ": " << n << " kills, " << ends << " comparisons, " << analyses
+            << " looks at all files (" << cut << " saw half a row for an instant), undisturbed "
             << took.count() << " s, all "
             << std::chrono::duration<double>(Clock::now() - begin).count() << " s" << std::endl;
   return n;
 }
 
-/// Changes of the short case that halve its time.
+/// Changes of the short case that halve its run time.
 const Words kCoarse = {"design.cell=0.01", "design.min_thickness=0.01", "esl.every=0.02"};
 
 Words coarse(Words changes) {
@@ -159,21 +161,22 @@ TEST(Kills, AtRandomMomentsChangeNothing) {
   EXPECT_GE(n, kills);
 }
 
-/// A system call of a run: its name, and how many of this name came before and with it.
+/// A system call of a run: its name, and its number among the calls of this name.
 struct Call {
   std::string name;
   int number;
 };
 
 constexpr const char* kChanging = "rename,renameat,renameat2,unlink,unlinkat,fsync,fdatasync";
-/// What else a run does to its files: one of these or of the ones above follows a call at once.
+/// Other calls by which a run changes its files: one of these or of kChanging follows a call
+/// immediately.
 constexpr const char* kFurther = "write,openat,close";
 
 bool is_changing(const Call& call) {
   return (std::string(",") + kChanging + ",").find("," + call.name + ",") != std::string::npos;
 }
 
-/// Runs the program under strace with these options of strace.
+/// Runs the program under strace with the given options of strace.
 Ended trace(const Scratch& scratch, const Words& options, const Words& arguments) {
   Words words = {"strace", "-f", "-qq", "--seccomp-bpf"};
   words.insert(words.end(), options.begin(), options.end());
@@ -182,9 +185,9 @@ Ended trace(const Scratch& scratch, const Words& options, const Words& arguments
   return ChildProgram(words, scratch / "").end();
 }
 
-/// Calls that the run makes after its last frame of a design is in its place: each that changes
-/// names or brings files to the disk, and the one that follows it. A kill comes before its call, so
-/// these are kills before and after each of the former.
+/// Returns the calls of a run after its last frame of a design was written: each call that renames,
+/// removes or flushes files, and the call that follows it. A kill happens before its call,
+/// therefore these are kills before and after each of the former.
 std::vector<Call> calls_of_final_writing(const std::string& log) {
   std::vector<Call> out;
   std::map<std::string, int> numbers;
@@ -216,7 +219,8 @@ TEST(Kills, AtCallsOfTheFinalWritingChangeNothing) {
   std::vector<Call> calls = calls_of_final_writing(log);
   ASSERT_GT(calls.size(), 20u);
   if (number_from("FLEXMORPH_KILLS", 0) == 0) {
-    // The one that makes run.json say "done", and the one that removes the first log behind it.
+    // Only the call by which run.json says "done", and the one that removes the first log
+    // afterwards.
     std::erase_if(calls, [&](const Call& call) {
       const int first = call.name == "unlink" ? 1 : -1;
       const bool last_rename =

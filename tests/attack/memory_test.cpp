@@ -1,8 +1,8 @@
-// Address space that ends (ulimit -v): a run that does not fit is refused with numbers or ends with
-// a sentence; none hangs, none says "unexpected".
+// Shows that a run in a limited address space (ulimit -v) which does not fit is refused with
+// numbers or ends with a sentence; no run hangs, and none reports an "unexpected" error.
 //
 //   FLEXMORPH_LIMITS=12 build/tests/attack/attack_tests --gtest_filter='LongMemory.*'
-//   limits between the least in which the program begins and 3.9 GB, default 3
+//   number of limits between the least in which the program starts and 3.9 GB, default 3
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <map>
 
-#include "cases/process/blas_room.h"
+#include "cases/process/blas_buffers.h"
 #include "geometry/sanitizers.h"
 #include "tests/attack/run_files.h"
 #include "tests/io/scratch.h"
@@ -48,10 +48,9 @@ std::vector<Large> large_runs() {
         "optimizer.max_iterations=1"}}};
 }
 
-/// The least address space [bytes], within a factor of 1.3, in which the program begins: its
-/// libraries are loaded and main() runs. With OpenCASCADE they map 230 MB. OpenBLAS of Debian 13
-/// maps its first buffer of 128 MiB while it is loaded, and tries again without an end where that
-/// fails.
+/// Returns the least address space [bytes], within a factor of 1.3, in which the program starts:
+/// its libraries are loaded and main() runs. With OpenCASCADE they map 230 MB. OpenBLAS of Debian
+/// 13 maps its first buffer of 128 MiB while it is loaded, and retries endlessly if that fails.
 double least_address_space(const Scratch& scratch) {
   for (double bytes = 2.6e8; bytes < 2e9; bytes *= 1.3)
     if (ChildProgram({FLEXMORPH_PROGRAM, "cases"}, scratch / "", {.address_space = bytes})
@@ -71,7 +70,7 @@ void expect_sentences(const std::vector<Large>& runs, size_t n, double largest) 
   for (const Large& run : runs) {
     std::map<int, int> codes;
     for (size_t k = 0; k < n; ++k) {
-      // Evenly in the logarithm.
+      // Uniformly distributed in the logarithm.
       const double bytes =
           least * std::pow(largest / least, static_cast<double>(k) / static_cast<double>(n - 1));
       const std::string what = std::string(run.name) + " in " + std::to_string(bytes / 1e6) + " MB";
@@ -101,8 +100,8 @@ void expect_sentences(const std::vector<Large>& runs, size_t n, double largest) 
   }
 }
 
-// In the largest of these limits some runs fit, and some are refused.
-TEST(Memory, EndsWithASentence) {
+// Within the larger limit some runs fit, and others are refused.
+TEST(Archive, EndsWithASentence) {
   if (kSanitized) GTEST_SKIP() << "sanitizers map terabytes";
   expect_sentences(large_runs(), 2, 8e8);
 }
@@ -116,7 +115,7 @@ TEST(LongMemory, EndsWithASentence) {
   expect_sentences(runs, testing::number_of("FLEXMORPH_LIMITS", 3), 3.9e9);
 }
 
-/// Mapped by this process [bytes].
+/// Returns the address space mapped by this process [bytes].
 double mapped() {
   std::ifstream status("/proc/self/statm");
   double pages = 0;
@@ -124,14 +123,15 @@ double mapped() {
   return pages * 4096;
 }
 
-// kBlasBuffer is that of the library that is used here: what is reserved is enough for as many
-// calls at a time, and no more is mapped for them.
-TEST(Memory, ReservedBuffersAreThoseOfBlas) {
+// kBlasBuffer is the buffer size of the BLAS library in use: the reserved buffers are enough for
+// this number of simultaneous calls, and no further memory is mapped for them.
+TEST(Archive, ReservedBuffersAreThoseOfBlas) {
   const double before = mapped();
   reserve_blas(3);
   const double reserved = mapped();
   EXPECT_LE(reserved - before, 3 * kBlasBuffer + 2 * 80e6);  // stacks and arenas of threads
-  // OpenBLAS keeps every buffer: a repeated test finds those of the test before as well.
+  // OpenBLAS keeps every buffer: if the test is repeated, buffers of the previous test exist as
+  // well.
   std::vector<void*> buffers;
   while (buffers.size() < 50 && mapped() <= reserved) buffers.push_back(blas_memory_alloc(0));
   EXPECT_GE(buffers.size(), 3u + 1);  // the last one was not reserved

@@ -11,7 +11,8 @@ bool in_word(char c) {
          c == '.';
 }
 
-/// First and one past the last character of the word at or after `at`; none: both the same.
+/// Returns the indices of the first and one past the last character of the word at or after `at`;
+/// equal if there is none.
 std::pair<size_t, size_t> word_at(const std::string& text, size_t at) {
   while (at < text.size() && !in_word(text[at])) ++at;
   size_t first = at;
@@ -20,7 +21,8 @@ std::pair<size_t, size_t> word_at(const std::string& text, size_t at) {
   return {first, at};
 }
 
-/// The same of a line, with its end.
+/// Returns the indices of the first and one past the last character of the line at `at`, including
+/// its end.
 std::pair<size_t, size_t> line_at(const std::string& text, size_t at) {
   const size_t before = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
   const size_t end = text.find('\n', at);

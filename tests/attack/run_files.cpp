@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Why a file is not whole; empty: it is.
+/// Returns why a file is incomplete; empty if it is complete.
 std::string complaint(const fs::path& path) {
   const std::string ending = path.extension().string(), text = contents_of(path.string());
   if (ending == ".tmp") return "is left under a temporary name";
@@ -47,7 +47,7 @@ std::string complaint(const fs::path& path) {
   return "";
 }
 
-/// Is so much memory free, and as much again for others?
+/// Returns whether this amount of memory is free two times.
 bool has_memory(double bytes) {
   std::ifstream in("/proc/meminfo");
   for (std::string line; std::getline(in, line);)
@@ -55,7 +55,7 @@ bool has_memory(double bytes) {
   return false;
 }
 
-/// Mounts of this process are its own from here on.
+/// Separates the mounts of this process from those of others. @returns true if that succeeded
 bool own_mounts() {
   static const bool done = [] {
     if (unshare(CLONE_NEWNS) != 0) return false;
@@ -102,7 +102,7 @@ bool SmallDisk::make_read_only() {
 bool SmallDisk::fill_up_to(double free_bytes) const {
   const int file = open((folder_ + "/of_others").c_str(), O_WRONLY | O_CREAT, 0600);
   bool done = false;
-  // Somebody writes meanwhile: what is asked for may not be there any more.
+  // Other processes may write at the same time and reduce the free space.
   for (int attempt = 0; attempt < 50 && !done; ++attempt) {
     struct statvfs disk {};
     statvfs(folder_.c_str(), &disk);

@@ -2,19 +2,19 @@
 
 #include <string>
 
-/// Files of a run folder after attacks, and disks of a small size.
+/// Checks of the files of a run folder after attacks, and disks of a small size.
 namespace flexmorph::testing {
 
-/// Is what stands in a run folder, or in folders below, whole? Tables end with whole rows, JSON can
-/// be read, XML, STL and DXF come to their ends, nothing is left under a temporary name.
-/// @return a line for each file that is not
+/// Checks that the files in a run folder and its subfolders are complete: tables end with complete
+/// rows, JSON can be read, XML, STL and DXF have their ends, and no file has a temporary name.
+/// @returns a line for each incomplete file
 std::string broken_files(const std::string& folder);
 
-/// Bytes of all files below.
+/// Returns the size of all files in a folder and its subfolders [bytes].
 double size_of(const std::string& folder);
 
-/// A small disk of its own (tmpfs) in a folder, while it lives; others do not see it. It is made
-/// where twice its size of memory is free.
+/// A small disk (tmpfs) in a folder that exists during the lifetime of the object and is invisible
+/// for other processes. It is created only if twice its size of memory is free.
 class SmallDisk {
  public:
   SmallDisk(std::string folder, double bytes);
@@ -22,12 +22,12 @@ class SmallDisk {
   SmallDisk(const SmallDisk&) = delete;
   SmallDisk& operator=(const SmallDisk&) = delete;
 
-  /// Is it there? Where this process may not mount it is not, and the folder is as it was.
+  /// Returns whether the disk exists. If this process may not mount it, the folder is unchanged.
   bool mounted() const { return mounted_; }
-  /// Nothing can be written any more; not where files are open for it.
+  /// Prevents all further writing; fails if files are open for writing.
   bool make_read_only();
-  /// Takes all that is free but so many bytes, with a file.
-  /// @return false when others were faster, several times
+  /// Fills the disk with a file until this number of bytes is free.
+  /// @returns false if other processes changed the free space several times
   bool fill_up_to(double free_bytes) const;
 
  private:
@@ -35,7 +35,7 @@ class SmallDisk {
   bool mounted_ = false;
 };
 
-/// Value of an environment variable as a number.
+/// Returns the value of an environment variable as a number.
 size_t number_of(const char* name, size_t otherwise);
 
 }  // namespace flexmorph::testing

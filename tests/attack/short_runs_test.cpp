@@ -1,6 +1,6 @@
-// Small cases changed at random and run, each in a process of its own: exit codes are those of
-// cases/README.md and never 1, nothing crashes, a run that is asked to end does so within a second
-// of processor time, and its files are whole.
+// Shows that small cases which are changed at random and run in separate processes end correctly:
+// exit codes are those of cases/README.md and never 1, nothing crashes, a run that receives SIGTERM
+// ends within its limit of processor time, and its files are complete.
 //
 //   FLEXMORPH_RUNS=10000 build/tests/attack/attack_tests --gtest_filter='ShortRuns.*'   default 16
 #include <gtest/gtest.h>
@@ -30,16 +30,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Processor time a run may take before it is asked to end [s].
+// Processor time of a run before it receives SIGTERM [s].
 constexpr double kOwn = kSanitized ? 40 : 2.5;
-// ... and that its step or iteration may take then: far above what any takes.
+// Further processor time for its current step or iteration [s], far above that of any regular one.
 constexpr double kMore = kSanitized ? 100 : 20;
-// For each component that is asked for: exact unions and their narrow places are a millisecond
-// each.
+// Further time for each component [s], because exact unions and their length-scale violations take
+// about a millisecond each.
 constexpr double kPerComponent = 2e-3;
 constexpr double kMemory = 4e9;  // address space [bytes]
 
-/// A shipped case, made small.
+/// Returns a shipped case that is made small by replacements.
 std::string small(const std::string& path,
                   const std::vector<std::pair<std::string, std::string>>& changes) {
   std::string text = contents_of(path);
@@ -73,7 +73,8 @@ std::vector<std::string> small_cases() {
           "motion_every = 0.01\n"};
 }
 
-/// One or two numbers of the text, times another: what comes out is often still a case.
+/// Returns the text with one or two numbers multiplied by a factor; the result is often still a
+/// valid case.
 std::string nudged(std::string text, testing::Mutations& random) {
   constexpr std::array kFactors = {0.5, 0.9, 1.1, 2.0, 5.0, 0.1, 10.0, -1.0, 0.0, 1e3, 1e-3, 1e6};
   const char* const digits = "0123456789";
@@ -93,7 +94,7 @@ std::string nudged(std::string text, testing::Mutations& random) {
   return text;
 }
 
-/// What main() makes of a run.
+/// Runs a case as main() does and exits with its code.
 [[noreturn]] void run_and_exit(const std::string& file, const std::string& folder) {
   const rlimit none{0, 0}, memory{static_cast<rlim_t>(kMemory), static_cast<rlim_t>(kMemory)};
   setrlimit(RLIMIT_CORE, &none);
@@ -127,7 +128,7 @@ double processor_time(pid_t process) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Components that a case asks for: two in every cell of its lattice.
+/// Returns the number of components that a case requests: two in every box of its lattice.
 double components(const std::string& text) {
   std::smatch found;
   if (!std::regex_search(text, found, std::regex("components *= *\\[ *([0-9]+) *, *([0-9]+)")))
@@ -135,10 +136,10 @@ double components(const std::string& text) {
   return 2 * std::stod(found[1]) * std::stod(found[2]);
 }
 
-/// Exit code; 128 and more: a signal; 1000: it did not end when it was asked to.
+/// Returns the exit code; 128 or more means a signal, 1000 that it did not end after SIGTERM.
 /// @param more  processor time that its end may take [s]
 int code_of(pid_t child, double more) {
-  // A child that waits uses no processor time. Busy machines are slower than that.
+  // The limits of wall time: a waiting child uses no processor time, and busy machines are slow.
   constexpr double kWall = 20, kBusy = 50;
   const auto begin = std::chrono::steady_clock::now();
   int status = 0;
@@ -160,10 +161,10 @@ int code_of(pid_t child, double more) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// What is wrong with the end of a run; empty: nothing.
+/// Returns the error in the end of a run; empty if there is none.
 std::string wrong(int code, const std::string& folder) {
   if (code == 1000) return "does not end when it is asked to";
-  // Before there is a folder there is nothing to lose.
+  // Before the folder exists there is nothing to lose.
   if (code == 128 + SIGTERM && !fs::exists(folder)) return "";
   if (code != 0 && (code < 2 || code > 5)) return "exit code " + std::to_string(code);
   if (!fs::exists(folder)) return code == 2 || code == 3 ? "" : "there is no folder";

@@ -1,8 +1,8 @@
-// All system calls of a run that change files, watched by strace: none reaches beyond the run
-// folder, and what a user keeps in it is there afterwards, byte for byte.
+// Shows that no system call of a run (watched by strace) changes files outside of the run folder,
+// and that files of a user in this folder are preserved byte for byte.
 //
 //   FLEXMORPH_WATCHED=all build/tests/attack/attack_tests --gtest_filter='SystemCalls.*'
-//   all shipped cases, shortened, and studies; a name: that one; by default four commands
+//   all shipped cases, shortened, and studies; or the name of one; by default four commands
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -32,14 +32,15 @@ const char* const kCalls =
     "fchownat,utimensat,utime,utimes,futimesat,mknod,mknodat,setxattr,lsetxattr,fsetxattr,"
     "removexattr,lremovexattr,fremovexattr,fallocate,mount,umount2,chroot,swapon";
 
-/// Files that may be changed and belong to nobody. Ipopt of Debian 13 loads Open MPI, and that
-/// loads UCX, which makes an empty folder in that of the session before main() runs.
+/// Returns whether a file may be changed although it is not in the run folder. Ipopt of Debian 13
+/// loads Open MPI, which loads UCX, which creates an empty folder in that of the session before
+/// main() runs.
 bool of_the_system(const std::string& path) {
   if (path.starts_with("/run/user/") && path.ends_with("/ucx")) return true;
   return path == "/dev/null" || path == "/dev/tty" || path.starts_with("/proc/self/");
 }
 
-/// All texts in quotes of a line, and what stands in <> behind a number (strace -y).
+/// Returns all quoted texts of a line.
 Words names_in(const std::string& line) {
   Words out;
   for (size_t at = line.find('"'); at != std::string::npos;) {
@@ -51,21 +52,21 @@ Words names_in(const std::string& line) {
   return out;
 }
 
-/// The first word behind the number of the process.
+/// Returns the first word after the number of the process.
 std::string call_of(const std::string& line) {
   const size_t begin = line.find_first_not_of("0123456789 "), end = line.find('(');
-  // "+++ exited with 0 +++", "--- SIGCHLD ...", "<... openat resumed>": said before, or no call.
+  // "+++ exited with 0 +++", "--- SIGCHLD ...", "<... openat resumed>" are no new calls.
   const bool is_call = begin < end && end != std::string::npos && std::isalpha(line[begin]);
   return is_call ? line.substr(begin, end - begin) : "";
 }
 
 struct Watched {
   size_t calls = 0, changing = 0;
-  std::string beyond;  ///< lines of calls that reach beyond
+  std::string beyond;  ///< Lines of calls that change files outside.
 };
 
-/// Looks at what strace wrote.
-/// @param roots  paths below which all may be changed, or that are such
+/// Analyses the output of strace.
+/// @param roots  paths that may be changed, with everything below them
 Watched look(const std::string& log, const Words& roots) {
   Watched out;
   std::ifstream in(log);
@@ -97,18 +98,18 @@ Watched look(const std::string& log, const Words& roots) {
   return out;
 }
 
-/// Is there a strace that may watch?
+/// Returns whether strace exists and may trace processes.
 bool can_watch(const Scratch& scratch) {
   const ChildEnd end =
       ChildProgram({"strace", "-f", "-o", scratch / "trial", "true"}, scratch / "").end();
   return end.code == 0;
 }
 
-/// The command under strace. @param folder  its -o; with what belongs to it: NAME.previous
+/// Runs the command under strace. @param folder  its run folder; NAME.previous may be changed, too
 Watched watch(const Scratch& scratch, const Words& words, const std::string& folder) {
   const std::string log = scratch / "calls";
   Words all = {"strace", "-f", "-y", "-s", "4096", "-o", log, "-e", kCalls};
-  // Two cannot trace one process.
+  // LeakSanitizer and strace cannot both trace one process.
   if (kSanitized) all.insert(all.end(), {"-E", "ASAN_OPTIONS=detect_leaks=0"});
   all.emplace_back(FLEXMORPH_PROGRAM);
   all.insert(all.end(), words.begin(), words.end());
@@ -120,7 +121,7 @@ Watched watch(const Scratch& scratch, const Words& words, const std::string& fol
   return look(log, {folder, folder + ".previous"});
 }
 
-/// Names that a run, or somebody who cleans up after it, might take for its own.
+/// Names that a run, or a cleanup after it, might mistake for its own files.
 const char* const kTempting[] = {
     "design_mine.txt", "components_old.csv", "history.csv.bak", "run.json.orig",
     "plots/mine.svg",  "loads/notes.csv",    "motion/my.vtu",   "motion/frame_99999.vtu",
@@ -145,15 +146,15 @@ struct Command {
   bool study = false;
 };
 
-/// Shortened: loads, iterations and times are few.
-Words short_words(const std::string& name) {
+/// Returns the words of a shortened run: few loads and iterations, short times.
+Words short_text(const std::string& name) {
   std::string path = FLEXMORPH_CASES;
   path.append("/").append(name).append(".toml");
   const std::string text = contents_of(path);
   const auto has = [&](const char* part) { return text.find(part) != std::string::npos; };
   Words out = {"run", name, "--set", "expect=", "--set", "accuracy="};
   if (has("[optimizer]")) out.insert(out.end(), {"--set", "optimizer.max_iterations=2"});
-  // A tenth of a motion, but where cells divide a length that is reached at its end.
+  // A tenth of the motion, except where cells must divide a length that is reached at its end.
   std::smatch end;
   if (name != "motion_platform" && name != "telescopic_crane" &&
       std::regex_search(text, end, std::regex("\\[time\\]\\nend = ([0-9.]+)")))
@@ -164,7 +165,7 @@ Words short_words(const std::string& name) {
 
 std::vector<Command> commands() {
   const std::string small = FLEXMORPH_SHORT_CASE;
-  // Coarse meshes: which files are written does not depend on them.
+  // The meshes are coarse, because the written files do not depend on them.
   std::vector<Command> out = {
       {"a design in a motion", {"run", small}},
       {"a path",
@@ -181,7 +182,7 @@ std::vector<Command> commands() {
        true}};
   const char* watched = std::getenv("FLEXMORPH_WATCHED");
   if (!watched) return out;
-  for (const std::string& name : cases::shipped_cases()) out.push_back({name, short_words(name)});
+  for (const std::string& name : cases::shipped_cases()) out.push_back({name, short_text(name)});
   out.push_back(
       {"accuracy", {"accuracy", "cantilever_roll_up", "--budget", "5s", "--no-verify"}, true});
   out.push_back({"stability", {"stability", "plate_pendulum", "--suites", "step"}, true});
@@ -202,7 +203,7 @@ TEST(SystemCalls, ChangeNothingBeyondTheFolder) {
     put_files(folder);
     const Watched again = watch(scratch, command.words, folder);
     EXPECT_EQ(again.beyond, "") << command.name << ", again";
-    // A run moves the folder whole, a study goes on in it.
+    // A run moves the whole folder, a study continues in it.
     expect_files(command.study ? folder : folder + ".previous");
     std::printf("%s: %zu and %zu calls, %zu and %zu that change files\n", command.name.c_str(),
                 first.calls, again.calls, first.changing, again.changing);
@@ -211,7 +212,7 @@ TEST(SystemCalls, ChangeNothingBeyondTheFolder) {
   }
 }
 
-// The watcher sees what it is there for.
+// The analysis of strace's output finds the calls that it must find.
 TEST(SystemCalls, AreSeen) {
   const Scratch scratch;
   scratch.write("log",

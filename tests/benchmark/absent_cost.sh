@@ -1,16 +1,16 @@
 #!/bin/sh
 # tests/benchmark/absent_cost.sh [FOLDER]
-# What scenes pay for what they do not have, and what they save by not having it: two Markdown
-# tables of numbers, not judged. FOLDER (default build-absent) keeps the build and the profiles.
+# Measures the cost of absent features, and the saving by their absence: two Markdown tables of
+# numbers, which are not assessed. FOLDER (default build-absent) keeps the build and the profiles.
 #
-# 1. The program is linked anew without the object files of a feature: what they define is undefined,
-#    and whoever needs it crashes. Instructions of scenes without the feature, by valgrind's
-#    callgrind: of fem::integrate() with all it calls, and of the whole program.
+# 1. The program is linked again without the object files of a feature: their symbols are undefined,
+#    and a scene that needs them crashes. Instructions of scenes without the feature are counted by
+#    valgrind's callgrind: of fem::integrate() with all its calls, and of the whole program.
 # 2. Pairs of scenes that differ in one feature: unknowns, instructions and CPU time per step, from
 #    runs of two lengths.
 #
-# Needs valgrind, which does not know AVX-512: kernels use the registers that all processors have.
-# FLEXMORPH names a program for the CPU times (default: the one that is built here).
+# Needs valgrind, which does not support AVX-512: kernels use the registers that all processors
+# have. FLEXMORPH is the path of a program for the CPU times (default: the one that is built here).
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=${1:-$root/build-absent}
@@ -24,7 +24,7 @@ cmake -G Ninja -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release \
 ninja -C "$build" flexmorph >>"$folder/build.log"
 fast=${FLEXMORPH:-$build/cases/flexmorph}
 
-# link NAME OBJECT... : the program without these object files.
+# link NAME OBJECT... : links the program without these object files.
 link() {
   to=$folder/$1
   name=$1
@@ -37,14 +37,14 @@ link() {
     line=$(echo "$line" | sed "s# $lib# $to/${lib##*/}#g")
     for object in "$@"; do ar d "$to/${lib##*/}" "$object.cpp.o"; done
   done
-  stubs=
+  replaced=
   if [ "$name" = free_lines ]; then
-    stubs=$to/absent_stubs.o
-    c++ -O3 -DNDEBUG -std=c++20 -I"$root" -isystem /usr/include/eigen3 -c -o "$stubs" \
+    replaced=$to/absent_stubs.o
+    c++ -O3 -DNDEBUG -std=c++20 -I"$root" -isystem /usr/include/eigen3 -c -o "$replaced" \
       "$root/tests/benchmark/absent_stubs.cpp"
   fi
   options="-no-pie -Wl,--unresolved-symbols=ignore-all -o $to/flexmorph"
-  (cd "$build" && sh -c "$(echo "$line" | sed "s# -o cases/flexmorph # $stubs $options #")")
+  (cd "$build" && sh -c "$(echo "$line" | sed "s# -o cases/flexmorph # $replaced $options #")")
 }
 
 # Every scene is a shipped case with changes.
@@ -69,7 +69,7 @@ scene() {
   [ "$1" = outputs ] && echo 'output.motion_every=0.005' || echo 'output.vtk=false output.plots=false'
 }
 
-# start PROGRAM SCENE END WRAPPER... : runs it up to END seconds.
+# start PROGRAM SCENE END WRAPPER... : runs a scene up to END seconds.
 start() {
   program=$1 chosen=$2 end=$3
   shift 3
@@ -88,7 +88,7 @@ start() {
 # count PROGRAM SCENE END : instructions of the whole program, and of integrate().
 count() {
   (
-    # One process, its symbols looked up before it starts.
+    # One process, whose symbols are resolved before it starts.
     export FLEXMORPH_THREADS=1 OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 LD_BIND_NOW=1
     start "$1" "$2" "$3" env FLEXMORPH_VECTORS=baseline valgrind --tool=callgrind --callgrind-out-file="$folder/$2.callgrind"
   )
@@ -123,8 +123,8 @@ whole_pendulum=$(count "$folder/all/flexmorph" pendulum 0.02)
 echo '| without | scene | `integrate()`, whole | without | more by % | program, more by % |'
 echo '| --- | --- | --- | --- | --- | --- |'
 without bending flow bending
-without free_lines flow free_work line_drive
-without rigid_bodies flow rigid_body rigid pair_joint body_joints pair_link springs
+without free_lines flow eulerian_work line_drive
+without rigid_bodies flow rigid_body rigid pair_joint body_joints pair_force_element springs
 without heat flow heated temperature thermal_displacement thermal_force
 without beams flow ancf_beam beam
 without loads flow dead_loads follower_loads
@@ -133,7 +133,7 @@ without energy_momentum flow energy_momentum
 without minimal_coordinates flow minimal_coordinates coordinate_partition acceleration_solver klu_solver
 without statics flow static_path
 without files flow vtk surfaces plane_frames exports sheet
-without free_lines pendulum free_work line_drive
+without free_lines pendulum eulerian_work line_drive
 without heat pendulum heated temperature thermal_displacement thermal_force
 
 per_step() {  # of $chosen

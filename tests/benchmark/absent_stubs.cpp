@@ -1,10 +1,10 @@
-// Stands in place of fem/terms/free_work.cpp where absent_cost.sh leaves free material lines out:
-// every body asks once whether it has some.
-#include "fem/terms/free_work.h"
+// Replaces fem/terms/eulerian_work.cpp in the build of absent_cost.sh without free material lines:
+// every body is checked once for such lines.
+#include "fem/terms/eulerian_work.h"
 
 namespace flexmorph::fem {
 
-void FreeTables::prepare(const Element& element, int, Tabulate, const Factors&) {
+void EulerianTables::prepare(const Element& element, int, Tabulate, const ScaleFactors&) {
   if (element.n_scalars() > 0) throw Error::input("built without free material lines");
 }
 

@@ -1,11 +1,12 @@
-// Error against steps and CPU seconds, equal steps and adaptive ones, by hand:
+// Prints errors, numbers of steps and CPU seconds of constant and adaptive steps; started by hand:
 //
 //   adaptive_steps [part of a scene's name]...
 //
-// Errors are the largest at 40 stops, in parts of the model's size, against equal steps at least
-// four times finer than the finest shown. Equal steps land on the stops, so that there are at least
-// 40 of them; adaptive ones are interpolated there. "best equal": of the fewest equal steps that
-// miss by no more, between the measured ones by the line through their logarithms.
+// An error is the largest one at 40 stops, as a fraction of the model's size, relative to a
+// reference with constant steps at least four times finer than the finest ones shown. Constant
+// steps end at the stops, therefore there are at least 40 of them; adaptive steps are interpolated.
+// "best equal" is the smallest number of constant steps with an error that is not larger,
+// interpolated between the measured ones (linearly in the logarithms).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -23,7 +24,7 @@ namespace {
 
 using namespace flexmorph;
 
-/// What a run is told: equal steps of a size, or adaptive ones.
+/// The settings of a run: constant steps of a size, or adaptive steps.
 struct Wish {
   double step = 1e-3;
   std::optional<fem::AdaptiveStep> adaptive;
@@ -39,8 +40,8 @@ using Problem = std::function<Course(const Wish&)>;
 struct Scene {
   std::string name;
   double end = 1, size = 1;   // [s], [m]
-  double shipped = 1e-3;      // the step of the case [s]
-  std::vector<double> steps;  // coarse to fine; the last one a reference
+  double shipped = 1e-3;      // step of the case [s]
+  std::vector<double> steps;  // coarse to fine; the last one is the reference
   Problem problem;
 };
 
@@ -57,7 +58,8 @@ double error(const Course& a, const Course& b) {
   return out;
 }
 
-/// Of the fewest equal steps that miss by at most this much; zero steps where none do.
+/// Returns the smallest number of constant steps with at most this error; zero steps if there is
+/// none.
 Measured best_equal(const std::vector<Measured>& equal, double error) {
   Measured out;
   for (size_t i = 0; i < equal.size(); ++i) {
@@ -75,10 +77,10 @@ Measured best_equal(const std::vector<Measured>& equal, double error) {
   return out;
 }
 
-std::optional<Measured> measure(const char* what, const Scene& scene, const Wish& wish,
+std::optional<Measured> measure(const char* what, const Scene& scene, const Wish& request,
                                 const Course& exact) {
   try {
-    const Course c = scene.problem(wish);
+    const Course c = scene.problem(request);
     const fem::StepCounts& n = c.result.counts;
     const Measured out = {error(c, exact) / scene.size, n.steps, c.seconds};
     std::printf("  %-16s error %.2e, %5d steps (%d + %d repeated), %6d Newton, %5d factors, %.2f s",
@@ -92,29 +94,29 @@ std::optional<Measured> measure(const char* what, const Scene& scene, const Wish
 }
 
 void compare(const Scene& scene) {
-  Wish wish;
-  for (int k = 1; k <= 40; ++k) wish.stops.push_back(scene.end * k / 40);
-  wish.step = scene.steps.back();
-  const Course exact = scene.problem(wish);
+  Wish request;
+  for (int k = 1; k <= 40; ++k) request.stops.push_back(scene.end * k / 40);
+  request.step = scene.steps.back();
+  const Course exact = scene.problem(request);
   std::printf("%s (size %.2g m; reference %d steps)\n", scene.name.c_str(), scene.size,
               exact.result.counts.steps);
   char text[40];
   std::vector<Measured> equal;
-  int shipped = 0;  // steps of the case
+  int shipped = 0;  // number of steps of the case
   for (size_t i = 0; i + 1 < scene.steps.size(); ++i) {
-    wish.step = scene.steps[i];
-    std::snprintf(text, sizeof text, "step %.2e s", wish.step);
-    const auto m = measure(text, scene, wish, exact);
+    request.step = scene.steps[i];
+    std::snprintf(text, sizeof text, "step %.2e s", request.step);
+    const auto m = measure(text, scene, request, exact);
     std::printf("\n");
     if (m) equal.push_back(*m);
   }
   shipped = static_cast<int>(std::lround(scene.end / scene.shipped));
-  wish.step = 1e-3;
+  request.step = 1e-3;
   for (const double tolerance : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}) {
-    wish.adaptive = fem::AdaptiveStep{};
-    wish.adaptive->tolerance = tolerance;
+    request.adaptive = fem::AdaptiveStep{};
+    request.adaptive->tolerance = tolerance;
     std::snprintf(text, sizeof text, "tolerance %.0e", tolerance);
-    const auto m = measure(text, scene, wish, exact);
+    const auto m = measure(text, scene, request, exact);
     if (!m) continue;
     const Measured best = best_equal(equal, m->error);
     if (best.steps > 0)
@@ -126,23 +128,24 @@ void compare(const Scene& scene) {
   std::fflush(stdout);
 }
 
-/// A shipped case with changes; its observed points, or the middles of the free ends of plates.
+/// Returns a shipped case with changes. Its points are the observed points and the middles of the
+/// free ends of plates.
 Problem shipped_case(const std::string& name, const std::vector<std::string>& changes) {
-  return [=](const Wish& wish) {
+  return [=](const Wish& request) {
     const cases::Scene scene = cases::read_scene(
         io::CaseFile(std::string(FLEXMORPH_CASES) + "/" + name + ".toml", changes));
     cases::Mechanism mechanism = cases::build_mechanism(scene);
     fem::MotionSettings& motion = mechanism.motion;
-    motion.step = wish.step;
-    motion.adaptive = wish.adaptive;
-    motion.stops = wish.stops;
+    motion.step = request.step;
+    motion.adaptive = request.adaptive;
+    motion.stops = request.stops;
     motion.balance = false;
     Course out;
     const auto see = [&](const fem::MotionStep& s) {
       if (!s.stop) return;
       for (const cases::Observe& o : scene.observed)
         out.points.push_back(fem::point_position(s.model.body(o.body), s.x, o.point));
-      for (const fem::Growth& g : mechanism.growths) {
+      for (const fem::MovingRoot& g : mechanism.moving_roots) {
         const fem::Body& body = s.model.body(g.body);
         const fem::LineGrid& grid = fem::grid_of(body);
         out.points.push_back(
@@ -150,23 +153,23 @@ Problem shipped_case(const std::string& name, const std::vector<std::string>& ch
       }
     };
     const double begin = cpu_seconds();
-    out.result = fem::integrate(mechanism.model, mechanism.growths, motion, see);
+    out.result = fem::integrate(mechanism.model, mechanism.moving_roots, motion, see);
     out.seconds = cpu_seconds() - begin;
     return out;
   };
 }
 
-/// Rigid models: their position in the first two unknowns of a body.
-Course move(fem::Workspace& model, const Wish& wish, double end, fem::Placement placement,
+/// Moves a model of rigid bodies. The points are the first two unknowns of a body, its position.
+Course move(fem::Workspace& model, const Wish& request, double end, fem::BodyPoses body_poses,
             const char* body) {
   fem::MotionSettings motion;
   motion.end = end;
-  motion.step = wish.step;
-  motion.adaptive = wish.adaptive;
-  motion.stops = wish.stops;
+  motion.step = request.step;
+  motion.adaptive = request.adaptive;
+  motion.stops = request.stops;
   motion.balance = false;
   motion.start = fem::Start::rigid;
-  motion.placement = std::move(placement);
+  motion.body_poses = std::move(body_poses);
   Course out;
   const double begin = cpu_seconds();
   out.result = fem::integrate(model, {}, motion, [&](const fem::MotionStep& s) {
@@ -177,47 +180,49 @@ Course move(fem::Workspace& model, const Wish& wish, double end, fem::Placement 
   return out;
 }
 
-/// A block on a spring about the origin, from the horizontal: a pendulum whose rod gives.
+/// Returns a block on a spring about the origin, released from the horizontal: a pendulum with an
+/// elastic rod.
 Problem spring_pendulum(double stiffness) {
-  return [=](const Wish& wish) {
+  return [=](const Wish& request) {
     fem::Workspace model;
     testing::add_rigid(model, "bob", {2, {0, 0}, 0.02}, Vec2(0, -9.81));
-    model.add_link(
+    model.add_force_element(
         fem::make_spring("rod", {.point = {0, 0}}, {.body = "bob"}, {stiffness, 0, 1.0}));
-    const auto placement = [](double) {
+    const auto body_poses = [](double) {
       fem::FrameMotion f;
       f.origin = {1, 0};
-      return std::vector<fem::Placed>{{"bob", f, 0}};
+      return std::vector<fem::BodyPose>{{"bob", f, 0}};
     };
-    return move(model, wish, 3, placement, "bob");
+    return move(model, request, 3, body_poses, "bob");
   };
 }
 
-/// A crank that turns freely, a block that slides on a line through its axis, and a rod that gives
-/// between them.
+/// Returns a crank that rotates freely, a block that slides on a line through the crank's axis, and
+/// an elastic rod between them.
 Problem slider_crank(double stiffness) {
-  return [=](const Wish& wish) {
+  return [=](const Wish& request) {
     fem::Workspace model;
     const Vec2 gravity(0, -9.81);
     testing::add_rigid(model, "crank", {1, {0.08, 0}, 0.003}, gravity);
     testing::add_rigid(model, "block", {0.5, {0, 0}, 0.001}, gravity);
     model.add_joint(fem::make_revolute("axis", {}, {.body = "crank"}));
     model.add_joint(fem::make_slider("guide", {}, {.body = "block"}));
-    model.add_link(fem::make_spring("rod", {.body = "crank", .point = {0.15, 0}}, {.body = "block"},
-                                    {stiffness, 0, 0.4}));
-    const auto placement = [](double) {
+    model.add_force_element(fem::make_spring("rod", {.body = "crank", .point = {0.15, 0}},
+                                             {.body = "block"}, {stiffness, 0, 0.4}));
+    const auto body_poses = [](double) {
       fem::FrameMotion crank, block;
       crank.angle = std::numbers::pi / 2;
       crank.angle_rate = 6;
       block.origin = {std::sqrt(0.4 * 0.4 - 0.15 * 0.15), 0};
       block.origin_rate = {-0.15 * 6, 0};
-      return std::vector<fem::Placed>{{"crank", crank, 0}, {"block", block, 0}};
+      return std::vector<fem::BodyPose>{{"crank", crank, 0}, {"block", block, 0}};
     };
-    return move(model, wish, 2, placement, "block");
+    return move(model, request, 2, body_poses, "block");
   };
 }
 
-/// From `coarse` by halves, as many as told, and a reference.
+/// Returns steps that are halved from level to level, beginning with `coarse`, and the step of the
+/// reference.
 std::vector<double> halves(double coarse, int levels, double reference) {
   std::vector<double> out;
   for (int k = 0; k < levels; ++k) out.push_back(coarse / std::exp2(k));
@@ -271,7 +276,7 @@ int main(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) wanted = wanted || scene.name.find(argv[i]) != std::string::npos;
     try {
       if (wanted) compare(scene);
-    } catch (const Error& e) {  // of the reference
+    } catch (const Error& e) {  // the reference cannot be computed
       std::printf("%s: %s\n", scene.name.c_str(), e.what());
     }
   }

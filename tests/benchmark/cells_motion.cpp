@@ -1,10 +1,10 @@
-// What motions on cells show, by hand:
+// Prints results of motions on cells; started by hand:
 //
 //   cells_motion plate SPEED STEP WIDTH...
-//       uniform rotating plate, WIDTH cells across, beside h16 and a Reissner beam
+//       uniform rotating plate, WIDTH cells across, compared with h16 and a Reissner beam
 //   cells_motion cut CASE COMPONENTS [SLOWER [WHERE]]
-//       a chord of a design cut over two cells at that part of the length, in a motion and in its
-//       static problem; speeds divided by SLOWER
+//       a chord of a design is cut over two cells at this fraction of the length, in a motion and
+//       in its static problem; speeds are divided by SLOWER
 //   cells_motion rank CASE COMPONENTS moved|shortened|slit [CHANGE...]
 //       20 disturbed designs of one volume: rank correlation of their compliances and motions
 //
@@ -76,7 +76,7 @@ void plates(double speed, double step, const std::vector<int>& widths) {
   }
 }
 
-/// A case's plate with the components of a run.
+/// The plate of a case with the components of a run.
 struct Designed {
   cases::Scene scene;
   mmc::BodyProblem problem;
@@ -97,8 +97,10 @@ struct Moved {
   fem::EslSets loads;
 };
 
-/// The motion with factors, on elements of the case or on cells; loads of the former.
-Moved move(const cases::Scene& scene, const fem::Factors& factors, const cases::MeshChoice& mesh) {
+/// Computes the motion with scale factors, on the elements of the case or on cells, and its
+/// equivalent static loads.
+Moved move(const cases::Scene& scene, const fem::ScaleFactors& factors,
+           const cases::MeshChoice& mesh) {
   cases::Mechanism m = cases::build_mechanism(scene, mesh);
   m.model.set_factors(m.model.bodies()[0], factors);
   m.motion.balance = false;
@@ -114,17 +116,17 @@ Moved move(const cases::Scene& scene, const fem::Factors& factors, const cases::
     out.integral += 0.5 * (s.x.t - last_t) * (last_u + s.energies.strain);
     last_t = s.x.t;
     last_u = s.energies.strain;
-    const fem::FrameMotion hub = m.growths[0].hub.drive()(s.x.t);
+    const fem::FrameMotion hub = m.moving_roots[0].hub.drive()(s.x.t);
     const Vec2 r = fem::point_motion(s.model.body(body), s.x, tip).position - hub.origin;
     out.amplitude = std::max(out.amplitude,
                              std::abs(-std::sin(hub.angle) * r.x() + std::cos(hub.angle) * r.y()));
     if (!s.stop || s.x.t == 0) return;
-    out.loads.sets.push_back(fem::equivalent_static_load(s.model, s.x, m.growths[0], out.loads.grid,
-                                                         masses, {}, m.motion.gravity));
+    out.loads.sets.push_back(fem::equivalent_static_load(
+        s.model, s.x, m.moving_roots[0], out.loads.grid, masses, {}, m.motion.gravity));
     out.loads.sets.back().weight = 1.0 / scene.esl->count(scene.time.end);
   };
   try {
-    fem::integrate(m.model, m.growths, m.motion, observe);
+    fem::integrate(m.model, m.moving_roots, m.motion, observe);
   } catch (const Error& error) {
     out.failure = error.what();
   }
@@ -132,16 +134,16 @@ Moved move(const cases::Scene& scene, const fem::Factors& factors, const cases::
   return out;
 }
 
-/// Σ w F · u with the same factors as the motion.
+/// Returns Σ w F · u with the scale factors of the motion.
 double compliance(const mmc::BodyProblem& problem, const fem::EslSets& loads,
                   const VectorXd& stiffness, const VectorXd& mass) {
   mmc::ComplianceEvaluator all(loads, problem.section, problem.compliance, stiffness, mass);
   return all.sum(stiffness, mass);
 }
 
-/// The material from the upper edge on in two columns in the middle, down to the first void: a
-/// chord of a truss.
-fem::Factors cut_chord(fem::Factors f, double at, double empty, double empty_mass) {
+/// Removes the material of two columns from the upper edge down to the first void at the fraction
+/// `at` of the length: this cuts a chord of a truss.
+fem::ScaleFactors cut_chord(fem::ScaleFactors f, double at, double empty, double empty_mass) {
   const Grid& g = f.grid;
   const int i = static_cast<int>(at * g.nx);
   int j = g.ny - 1;
@@ -171,8 +173,9 @@ void cut(const std::string& path, const std::string& components, double slower, 
   change("hub.angular_velocity", shipped.hubs[0].angular_velocity / slower);
   change("body.flow.speed", shipped.bodies[0].flow->speed / slower);
   const Designed d = Designed::of(path, components, changes);
-  const fem::Factors whole = mmc::dynamic_factors(d.problem, d.problem.design.components());
-  const fem::Factors severed = cut_chord(whole, at, d.problem.stiffness_void, d.problem.mass_void);
+  const fem::ScaleFactors whole = mmc::dynamic_factors(d.problem, d.problem.design.components());
+  const fem::ScaleFactors severed =
+      cut_chord(whole, at, d.problem.stiffness_void, d.problem.mass_void);
   std::printf("speeds / %g\n| | tip mm | int U dt, J s | after / before - 1 | CPU s |\n", slower);
   const auto row = [](const char* name, const Moved& m, double before) {
     std::printf("| %s | %.5g | %.5g | %.1f %% | %.0f | %s\n", name, 1e3 * m.amplitude, m.integral,
@@ -197,7 +200,7 @@ void cut(const std::string& path, const std::string& components, double slower, 
               (apart.integral / on_cells.integral - 1) / (after / before - 1));
 }
 
-/// Ranks from 0; no two values are equal.
+/// Returns the ranks of values, from 0; no two values are equal.
 VectorXd ranks(const std::vector<double>& values) {
   std::vector<size_t> order(values.size());
   std::iota(order.begin(), order.end(), size_t(0));
@@ -212,13 +215,14 @@ double spearman(const std::vector<double>& a, const std::vector<double>& b) {
   return x.dot(y) / x.norm() / y.norm();
 }
 
-/// How designs of a family differ from the first: all components moved and turned by up to a
-/// length, or every one shortened by up to a part of itself, which cuts some off.
-/// `slit` is moved, too, by a half of that, and then has a slit in a flange.
+/// Kinds of differences between a design and the first one: all components moved and rotated by up
+/// to a length; or all components shortened by up to a fraction of their length, which disconnects
+/// some; or (`slit`) components moved by half of that length and a slit in a flange.
 enum class Family { moved, shortened, slit };
 
-/// Components disturbed at random, then thicker or thinner until the volume is what it was.
-/// @param size  6 mm of moves, or 20 % of a length, are 1
+/// Returns components that are disturbed at random and then thickened or thinned until the volume
+/// is as before.
+/// @param size  1 means 6 mm of displacement, or 20 % of a length
 std::vector<Component> disturbed(const mmc::BodyProblem& problem, Family family, double size,
                                  unsigned seed) {
   std::mt19937 engine(seed);
@@ -249,8 +253,7 @@ std::vector<Component> disturbed(const mmc::BodyProblem& problem, Family family,
   return scaled(low);
 }
 
-/// A slit across, two cells wide and none to four deep, from the outside of a flange, both at
-/// random.
+/// Cuts a slit from the outside of a flange at random: two cells wide and zero to four cells deep.
 void cut_slit(const Grid& g, unsigned seed, VectorXd& fractions) {
   std::mt19937 engine(1000 + seed);
   const auto below = [&](unsigned long n) { return static_cast<int>(engine() % n); };
@@ -271,7 +274,7 @@ void rank(const std::string& path, const std::string& components, Family family,
   cells.cells = 1;
   std::vector<double> statics, coarse, fine;
   std::printf(
-      "| disturbed by | volume | sharp compliance J | h16 int U dt J s | cells J s | CPU s |\n");
+      "| disturbed by | volume | crisp compliance J | h16 int U dt J s | cells J s | CPU s |\n");
   constexpr int kDesigns = 20;
   for (int k = 0; k < kDesigns; ++k) {
     const double size = k / (kDesigns - 1.0);
@@ -279,13 +282,13 @@ void rank(const std::string& path, const std::string& components, Family family,
         disturbed(d.problem, family, size, static_cast<unsigned>(k + 1));
     VectorXd fractions = mmc::fractions_of(d.problem, moved);
     if (family == Family::slit) cut_slit(d.problem.grid, static_cast<unsigned>(k + 1), fractions);
-    const mmc::CellFactors dynamic =
+    const mmc::CellScaleFactors dynamic =
         mmc::Ersatz::dynamic(fractions, d.problem.stiffness_void, d.problem.mass_void);
-    const fem::Factors factors{d.problem.grid, dynamic.stiffness, dynamic.mass};
-    const mmc::CellFactors sharp = mmc::ersatz_of(d.problem).sharp(fractions);
+    const fem::ScaleFactors factors{d.problem.grid, dynamic.stiffness, dynamic.mass};
+    const mmc::CellScaleFactors crisp = mmc::ersatz_of(d.problem).crisp(fractions);
     const Moved on_h16 = move(d.scene, factors, {});
     const Moved on_cells = move(d.scene, factors, cells);
-    const double c = compliance(d.problem, on_h16.loads, sharp.stiffness, sharp.mass);
+    const double c = compliance(d.problem, on_h16.loads, crisp.stiffness, crisp.mass);
     std::printf("| %.2f | %.4f | %.5g | %.5g | %.5g | %.0f | %s\n", size, fractions.mean(), c,
                 on_h16.integral, on_cells.integral, on_cells.seconds, on_cells.failure.c_str());
     std::fflush(stdout);

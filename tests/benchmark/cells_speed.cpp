@@ -1,13 +1,14 @@
-// Cost of a motion on cells: the plate of rotating_plate_v05, uniform, turns and grows out of its
-// hub at 0.5 m/s, from 0.5 m on, in steps of 1 ms.
+// Prints the cost of a motion on cells: the plate of rotating_plate_v05 with uniform material
+// rotates and grows out of its hub at 0.5 m/s, beginning with 0.5 m, in steps of 1 ms.
 //
 //   cells_speed [columns rows end]
 //   cells_speed growth
 //
-// columns, rows: of cells at the start (200, 40); end [s] (1). Prints CPU time by phases, the
-// counts of Newton's method and where the tip is. A phase is the CPU time of one call, measured on
-// the mesh of the end, where it is dearest, times the number of calls: what is left of the whole is
-// too small by that. growth: 0.1 s on 100 x 20 to 400 x 80 cells, and exponents of the cost.
+// columns, rows: numbers of cells at the start (200, 40); end [s] (1). Prints the CPU time of
+// phases, the counts of Newton's method and the position of the tip. The time of a phase is the CPU
+// time of one call, measured on the final mesh, where it is largest, times the number of calls;
+// therefore the remaining time is too small. growth: 0.1 s on 100 x 20 to 400 x 80 cells, and
+// exponents of the cost.
 #include <Eigen/QR>
 #include <cmath>
 #include <cstdio>
@@ -23,7 +24,7 @@ namespace {
 
 using namespace flexmorph;
 
-/// CPU time [s] of one call: the mean over 0.1 s or more.
+/// Returns the CPU time [s] of one call: the mean over at least 0.1 s.
 template <class F>
 double seconds(const F& f) {
   f();
@@ -36,14 +37,14 @@ double seconds(const F& f) {
   return (cpu_seconds() - start) / n;
 }
 
-/// Of one call of each phase [s], or of a step.
+/// CPU time of one call of each phase, or of a step [s].
 struct Costs {
   double cells = 0;
   double force = 0, tangent = 0, analysis = 0, factor = 0, border = 0, solve = 0, step = 0;
 };
 
 void measure(fem::Workspace& model, const fem::State& x, Costs& out) {
-  // As in generalized-alpha with ρ = 0.8 at this step.
+  // The weights are those of generalized-alpha with ρ = 0.8 at this step.
   const double h = 1e-3, beta_h2 = h * h * 0.25 * (1 + 0.2 / 1.8) * (1 + 0.2 / 1.8);
   fem::Constraints c;
   model.constraints(x, c);
@@ -52,7 +53,7 @@ void measure(fem::Workspace& model, const fem::State& x, Costs& out) {
   const fem::Weights w{1, 0.5 * h / beta_h2, 1 / beta_h2};
   out.force = seconds([&] { model.force(x, force); });
   out.tangent = seconds([&] { model.kkt(x, c, w, beta_h2, a); });
-  fem::UnsymmetricSolver solver;
+  fem::DirectSolver solver;
   const double both = seconds([&] {
     solver.analyze(a);
     solver.factorize(a);
@@ -78,7 +79,7 @@ Costs run(int columns, int rows, double end) {
   settings.end = end;
   const double start = cpu_seconds();
   const fem::MotionResult r =
-      fem::integrate(scene.model, scene.growths, settings, [](const fem::MotionStep&) {});
+      fem::integrate(scene.model, scene.moving_roots, settings, [](const fem::MotionStep&) {});
   const double whole = cpu_seconds() - start;
   const fem::StepCounts& n = r.counts;
   const auto events = static_cast<int>(r.events.size());
@@ -104,7 +105,8 @@ Costs run(int columns, int rows, double end) {
   return out;
 }
 
-/// Exponents of the costs by the number of cells: least squares of logarithms.
+/// Prints the exponents of the costs as functions of the number of cells, by least squares of
+/// logarithms.
 void growth() {
   std::vector<Costs> all;
   for (const int rows : {20, 40, 80}) all.push_back(run(5 * rows, rows, 0.1));

@@ -37,8 +37,8 @@ ComparedCase::ComparedCase(const std::string& path, std::span<const std::string>
     return;
   }
   sets = loads_of_motion(scene, problem);
-  const mmc::CellFactors first =
-      mmc::ersatz_of(problem).sharp(mmc::fractions_of(problem, problem.design.components()));
+  const mmc::CellScaleFactors first =
+      mmc::ersatz_of(problem).crisp(mmc::fractions_of(problem, problem.design.components()));
   loads = std::make_unique<mmc::ComplianceEvaluator>(sets, problem.section, problem.compliance,
                                                      first.stiffness, first.mass);
   by_position = mmc::loads_by_position(problem, sets);
@@ -52,7 +52,7 @@ double ComparedCase::domain_area() const {
 ComparedDesign compared(const ComparedCase& of, std::vector<Region> regions, double seconds) {
   ComparedDesign out;
   const double cell = mmc::point_reach(of.problem);
-  verification::Settings settings;
+  verification::VerificationSettings settings;
   settings.tolerance = kVerificationTolerance;
   settings.size = 2 * cell;
   settings.reach = cell;
@@ -68,10 +68,10 @@ ComparedDesign compared(const ComparedCase& of, std::vector<Region> regions, dou
 
 ComparedDesign design_by_components(ComparedCase& of) {
   const double clock = cpu_seconds();
-  bool going = true;
+  bool is_running = true;
   const mmc::DesignSettings settings{0, of.scene.optimizer, false, nullptr};
   mmc::design_body(
-      of.problem, *of.loads, 1, settings, [](const auto&) { return true; }, going);
+      of.problem, *of.loads, 1, settings, [](const auto&) { return true; }, is_running);
   const double seconds = cpu_seconds() - clock;
   return compared(of, mmc::exported_regions(of.problem), seconds);
 }

@@ -10,41 +10,42 @@
 #include "optim/mmc/problem/body_problem.h"
 #include "optim/verification/verification.h"
 
-/// A case whose problem several methods solve, and the judge of what they come to.
+/// A case whose problem is solved by several methods, and the verification of their results.
 namespace flexmorph::benchmark {
 
-/// The problem of a case's only design under loads that stay as they are: those of a plate at rest,
-/// or the equivalent static loads of the motion with the case's first layout.
+/// The problem of the only design of a case under fixed loads: those of a static plate, or the
+/// equivalent static loads of the motion with the first layout of the case.
 struct ComparedCase {
   cases::Scene scene;
   mmc::BodyProblem problem;
-  fem::EslSets sets;  ///< of the motion; a plate at rest has none
+  fem::EslSets sets;  ///< Loads of the motion; empty for a static plate.
   std::unique_ptr<mmc::ComplianceEvaluator> loads;
   verification::Loads by_position;
 
-  /// @param path  of a case file, or the name of a shipped case
-  /// @throws Error from the case, or from its motion
+  /// @param path  path of a case file, or name of a shipped case
+  /// @throws Error from the case or its motion
   explicit ComparedCase(const std::string& path, std::span<const std::string> changes = {});
   ComparedCase(const ComparedCase&) = delete;
   ComparedCase& operator=(const ComparedCase&) = delete;
 
-  double domain_area() const;  ///< [m²]
+  double domain_area() const;  ///< Returns the area of the domain [m²].
 };
 
-/// An outline as it is judged.
+/// An outline with its verification.
 struct ComparedDesign {
   std::vector<Region> regions;
   verification::OutlineVerification verdict;
-  double volume = 0;   ///< part of the domain
-  double feature = 0;  ///< smallest width of material that no given region makes [m]
-  double gap = 0;      ///< likewise of the void
-  double seconds = 0;  ///< CPU, of the design alone
+  double volume = 0;   ///< Fraction of the domain.
+  double feature = 0;  ///< Smallest width of material that no given region causes [m].
+  double gap = 0;      ///< Smallest gap that no given region causes [m].
+  double seconds = 0;  ///< CPU time of the design only [s].
 };
-/// Tighter than a run's judge: two methods may differ by less than that one's error.
+/// The tolerance is smaller than in a run, because two methods may differ by less than the error of
+/// a run.
 constexpr double kVerificationTolerance = 0.001;
 ComparedDesign compared(const ComparedCase& of, std::vector<Region> regions, double seconds);
 
-/// The program's own design, as a run makes it.
+/// Returns the program's own design, made as in a run.
 ComparedDesign design_by_components(ComparedCase& of);
 
 }  // namespace flexmorph::benchmark

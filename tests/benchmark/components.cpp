@@ -1,5 +1,5 @@
-// CPU time of what components cost besides mechanics: 120, 480 and 2000 of them on 400 x 200 cells,
-// slender ones on a lattice, moved at random. Prints a table and asserts nothing.
+// Prints the CPU time of components without mechanics: 120, 480 and 2000 slender components on 400
+// x 200 cells, in a lattice with random displacements. It checks nothing.
 
 #include <cstdio>
 #include <random>
@@ -19,7 +19,7 @@ using namespace flexmorph::benchmark;
 
 constexpr double kThinnest = 0.004;  // half-thickness [m]
 
-/// Two crossing components to a box of the lattice.
+/// Returns two crossing components per box of the lattice.
 std::vector<Component> lattice(int along, int across, const Grid& grid) {
   std::mt19937 engine(1);
   const auto draw = [&] { return 2 * (static_cast<double>(engine()) / 4294967295.0) - 1; };

@@ -10,10 +10,10 @@
 
 namespace flexmorph::benchmark {
 
-/// First thing in main(): one thread, the kernels every program takes; and a line of what it runs
-/// on, for the tables.
+/// Must be called first in main(): selects one thread and the BLAS kernels of all programs, and
+/// prints the processor for the tables.
 inline void begin(char** argv) {
-  settle_processor(1, argv);
+  set_up_processor(1, argv);
   std::string model = "unknown processor";
   std::ifstream cpuinfo("/proc/cpuinfo");
   for (std::string line; std::getline(cpuinfo, line);)

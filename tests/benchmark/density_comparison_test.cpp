@@ -1,5 +1,5 @@
-// The program's designs beside those of a density method that a user would pick instead: the same
-// problem, loads and volume, and one judge for both outlines. Prints a table; the command is in
+// Compares the program's designs with those of a density method: one problem, equal loads and
+// volume, and one verification for both outlines. Prints a table; the command is in
 // tests/README.md.
 
 #include <gtest/gtest.h>
@@ -41,11 +41,13 @@ name = "mma"
 max_iterations = 300
 )";
 
-/// Outlines are taken from this projection on: which of them is best differs from case to case.
+/// Least projection of the stages whose outlines are compared; which of them is best differs from
+/// case to case.
 constexpr double kFirstOutline = 4;
 
-/// The least compliant of the outlines of the last stages, at an area; its seconds are those of all
-/// stages. (Thin members that the last stages leave grey are cut by their outlines.)
+/// Returns the outline with the least compliance of the last stages, at a given area; its seconds
+/// are those of all stages. (Thin members that remain grey in the last stages are cut by their
+/// outlines.)
 ComparedDesign best_by_densities(ComparedCase& of, double allowed, double threshold) {
   DensitySettings settings;
   settings.stages = density_stages(threshold);
@@ -60,7 +62,7 @@ ComparedDesign best_by_densities(ComparedCase& of, double allowed, double thresh
                  stages.back().seconds);
     std::printf("    projection %2.0f: cells %.5g, outline %.5g, %d pieces\n",
                 stage.stage.projection, stage.compliance, found.verdict.compliance,
-                found.verdict.n_pieces);
+                found.verdict.n_connected_regions);
     if (found.verdict.compliance < best.verdict.compliance) best = std::move(found);
   }
   return best;
@@ -79,21 +81,22 @@ INSTANTIATE_TEST_SUITE_P(Cases, BesideDensities,
                                            "rotating_plate_v05"),
                          [](const auto& test) { return std::string(test.param); });
 
-// Designs have the same volume; how good each is stands in the table.
+// The test checks that designs have equal volumes; their quality is printed in the table.
 TEST_P(BesideDensities, IsPrinted) {
   const std::string name = GetParam();
   const Scratch scratch;
   ComparedCase of(name == "strip" ? scratch.write("strip.toml", kStrip) : name, {});
   const double cell = of.problem.grid.dx();
   std::printf("%s, %d x %d cells\n", name.c_str(), of.problem.grid.nx, of.problem.grid.ny);
-  // First, as the loads of a motion belong to the design that the case begins with.
+  // This design is made first, because the loads of a motion belong to the first design of the
+  // case.
   const ComparedDesign own = design_by_components(of);
   print("components", own, cell);
   EXPECT_TRUE(own.verdict.converged);
-  EXPECT_EQ(own.verdict.n_omitted_pieces, 0);
+  EXPECT_EQ(own.verdict.n_omitted_regions, 0);
   EXPECT_NEAR(own.volume, *mmc::allowed_volume(of.problem.goal), 1e-3 * own.volume);
-  // The stiffness of the densities themselves, and that of an eroded design: the second has wider
-  // members.
+  // Two density designs: with the stiffness of the densities themselves, and with that of an eroded
+  // design, which has wider members.
   for (const double threshold : {0.5, 0.6}) {
     const ComparedDesign other = best_by_densities(of, area(own.regions), threshold);
     print(threshold > 0.5 ? "eroded" : "densities", other, cell);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kVoid = 1e-6;       // ε
 constexpr double kMiddle = 0.5;      // threshold of the projection
-constexpr double kLogPerUnit = 10;   // log of the bound per unit of its variable
-constexpr double kReachOfBound = 3;  // that variable's way to each side
+constexpr double kLogPerUnit = 10;   // logarithm of the bound per unit of its variable
+constexpr double kReachOfBound = 3;  // range of this variable to each side
 
 double projected(double filtered, double beta, double eta) {
   const double below = std::tanh(beta * eta);
@@ -30,8 +30,8 @@ bool lies_in(std::span<const std::vector<Vec2>> polygons, const Vec2& point) {
   });
 }
 
-/// Functions are scaled so that the derivative by one cell is of the order of one, which is what
-/// the constants of the optimizer are made for.
+/// Functions are scaled so that the derivative with respect to one cell is of the order of one, for
+/// which the constants of the optimizer are chosen.
 optim::Settings optimizer_settings(const DensityStage& stage, double move_limit, int n_cells) {
   optim::Settings out;
   out.name = "mma";
@@ -102,7 +102,7 @@ DensityProblem::DensityProblem(const DensityPlate& plate, const Eigen::SparseMat
   for (int c = 0; c < plate.plate.grid.n_cells(); ++c)
     if (plate.designs(c)) designed_.push_back(c);
   if (!plate.worst) return;
-  const mmc::CellFactors cells = factors(densities(start_));
+  const mmc::CellScaleFactors cells = factors(densities(start_));
   const double largest = loads.individual(cells.stiffness, cells.mass).maxCoeff();
   start_.conservativeResize(start_.size() + 1);
   start_[start_.size() - 1] = std::log(largest) / kLogPerUnit;
@@ -139,11 +139,12 @@ Densities DensityProblem::densities(const VectorXd& x) const {
   return out;
 }
 
-mmc::CellFactors DensityProblem::factors(const Densities& at) const {
+mmc::CellScaleFactors DensityProblem::factors(const Densities& at) const {
   return {kVoid + (1 - kVoid) * at.stiff.array().pow(stage_.penalty), at.projected};
 }
 
-/// Derivatives by the factors of cells -> by the variables. @param d_mass  or empty: zeros
+/// Returns derivatives with respect to the variables from derivatives with respect to the scale
+/// factors of cells. @param d_mass  empty means zero
 VectorXd DensityProblem::slope(const Densities& at, const VectorXd& d_stiffness,
                                const VectorXd& d_mass) const {
   VectorXd by_filtered = VectorXd::Zero(at.projected.size());
@@ -162,9 +163,9 @@ VectorXd DensityProblem::slope(const Densities& at, const VectorXd& d_stiffness,
   return out;
 }
 
-/// The objective, and log C_l <= log z where the largest compliance counts.
-void DensityProblem::add_loads(const Densities& at, const mmc::CellFactors& cells, double bound,
-                               optim::Response& out) {
+/// Adds the objective, and log C_l <= log z if the largest compliance is minimized.
+void DensityProblem::add_loads(const Densities& at, const mmc::CellScaleFactors& cells,
+                               double bound, optim::ProblemValues& out) {
   if (!plate_.worst) {
     mmc::ComplianceEvaluator::Value value;
     loads_.evaluate(cells.stiffness, cells.mass, value);
@@ -185,9 +186,9 @@ void DensityProblem::add_loads(const Densities& at, const mmc::CellFactors& cell
   }
 }
 
-optim::Response DensityProblem::evaluate(const VectorXd& x) {
+optim::ProblemValues DensityProblem::evaluate(const VectorXd& x) {
   const Densities at = densities(x);
-  optim::Response out;
+  optim::ProblemValues out;
   out.g = VectorXd::Zero(n_constraints());
   out.dg = MatrixXd::Zero(n_constraints(), start_.size());
   const double allowed = plate_.volume * plate_.plate.n_domain_cells();

@@ -6,38 +6,39 @@
 #include "optim/mmc/problem/body_problem.h"
 #include "optim/optimizer.h"
 
-/// What a user would take instead of components: a density for every cell, filtered and projected.
-/// It designs the problem of a case, under the same loads on the same cells, so that both can be
-/// compared.
+/// A density method as an alternative to components: a density for every cell, filtered and
+/// projected. It designs the problem of a case under equal loads on equal cells, so that both can
+/// be compared.
 namespace flexmorph::benchmark {
 
-/// What a density method designs: the cells of a body.
+/// The cells of a body that a density method designs.
 struct DensityPlate {
   mmc::Plate plate;
-  std::vector<signed char> given;  ///< 1: material, -1: void, 0: designed (n_cells)
-  double volume = 0;               ///< part of the domain that may be material, given one included
-  bool worst = false;              ///< Is the largest compliance minimized, not the weighted sum?
+  std::vector<signed char> given;  ///< 1: material, -1: void, 0: designed (n_cells).
+  /// Largest fraction of the domain that is material, including given material.
+  double volume = 0;
+  bool worst = false;  ///< True if the largest compliance is minimized, false for the weighted sum.
 
   bool designs(int cell) const { return given[static_cast<std::size_t>(cell)] == 0; }
 };
-/// @throws Error (input) when the goal is another than the least compliance of some volume.
+/// @throws Error (input) if the goal is not the least compliance of some volume.
 DensityPlate density_plate(const mmc::BodyProblem& problem);
 
 /// One step of the continuation.
 struct DensityStage {
-  double penalty = 3;      ///< p: stiffness is ρ^p
-  double projection = 1;   ///< β: how steep the projection is
-  double threshold = 0.5;  ///< η of the stiffness: above 1/2 it is that of an eroded design
+  double penalty = 3;      ///< p: the stiffness is ρ^p.
+  double projection = 1;   ///< β: steepness of the projection.
+  double threshold = 0.5;  ///< η of the stiffness: above 1/2 it is that of an eroded design.
   int iterations = 80;
 };
-/// The penalty grows first, while the projection is flat; then the projection doubles, up to 32.
-/// (Half as many iterations ended up to 0.9 % more compliant, twice as many no less; steeper
-/// projections only pull outlines towards the sides of cells.)
-/// @param threshold  of the stiffness, from β = 2 on
+/// Returns stages in which the penalty grows first while the projection is flat; then the
+/// projection doubles, up to 32. (Half as many iterations gave up to 0.9 % more compliance, twice
+/// as many the same; steeper projections only move outlines towards the sides of cells.)
+/// @param threshold  threshold of the stiffness, from β = 2 on
 std::vector<DensityStage> density_stages(double threshold = 0.5);
 
 struct DensitySettings {
-  double radius = 2;  ///< of the filter [cells]
+  double radius = 2;  ///< Radius of the filter [cells].
   std::vector<DensityStage> stages = density_stages();
   double move_limit = 0.05;
 };
@@ -45,12 +46,12 @@ struct DensitySettings {
 /// Densities of all cells (n_cells), 0 outside of the domain.
 struct Densities {
   VectorXd filtered, projected;
-  VectorXd stiff;  ///< projected about the threshold of the stiffness
+  VectorXd stiff;  ///< Densities projected about the threshold of the stiffness.
 };
 
-/// Weights of the density filter: x̃_c = Σ w_cd x_d / Σ w_cd, w_cd = max(0, R - |X_c - X_d|) over
-/// the cells d of the domain (n_cells x n_cells, rows outside of the domain are empty). Source:
-/// Bruns & Tortorelli (2001), CMAME 190, 3443-3459.
+/// Returns the weights of the density filter: x̃_c = Σ w_cd x_d / Σ w_cd, w_cd = max(0, R - |X_c -
+/// X_d|) over the cells d of the domain (n_cells x n_cells, rows outside of the domain are empty).
+/// Source: Bruns & Tortorelli (2001), CMAME 190, 3443-3459.
 /// @param radius  R [m]
 Eigen::SparseMatrix<double> density_filter(const mmc::Plate& plate, double radius);
 
@@ -60,12 +61,12 @@ Eigen::SparseMatrix<double> density_filter(const mmc::Plate& plate, double radiu
 ///   ρ(η) = (tanh βη + tanh β(x̃ - η)) / (tanh βη + tanh β(1 - η))    given cells: 1 or 0
 ///   stiffness factor = ε + (1 - ε) ρ(η)^p,   mass factor, volume = ρ(1/2),   ε = 1e-6
 ///
-/// η > 1/2 keeps members from being so thin that an outline cuts them.
-/// Where the largest compliance counts there is one more variable, as in mmc::MmcProblem.
+/// η > 1/2 prevents members so thin that an outline cuts them. If the largest compliance is
+/// minimized there is one more variable, as in mmc::MmcProblem.
 /// Source: Wang, Lazarov & Sigmund (2011), SMO 43, 767-784, for the projection.
 class DensityProblem final : public optim::Problem {
  public:
-  /// All references live longer.
+  /// All referenced objects must outlive this one.
   /// @param start  x (n_designed)
   DensityProblem(const DensityPlate& plate, const Eigen::SparseMatrix<double>& filter,
                  mmc::ComplianceEvaluator& loads, const DensityStage& stage, VectorXd start);
@@ -75,16 +76,16 @@ class DensityProblem final : public optim::Problem {
   VectorXd lower() const override;
   VectorXd upper() const override;
   VectorXd start() const override { return start_; }
-  optim::Response evaluate(const VectorXd& x) override;
+  optim::ProblemValues evaluate(const VectorXd& x) override;
 
   int n_designed() const { return static_cast<int>(designed_.size()); }
   Densities densities(const VectorXd& x) const;
 
  private:
-  mmc::CellFactors factors(const Densities& at) const;
+  mmc::CellScaleFactors factors(const Densities& at) const;
   VectorXd slope(const Densities& at, const VectorXd& d_stiffness, const VectorXd& d_mass) const;
-  void add_loads(const Densities& at, const mmc::CellFactors& cells, double bound,
-                 optim::Response& out);
+  void add_loads(const Densities& at, const mmc::CellScaleFactors& cells, double bound,
+                 optim::ProblemValues& out);
 
   const DensityPlate& plate_;
   const Eigen::SparseMatrix<double>& filter_;
@@ -94,17 +95,17 @@ class DensityProblem final : public optim::Problem {
   VectorXd start_;
 };
 
-/// What a stage came to.
+/// Result of a stage.
 struct DensityDesign {
   DensityStage stage;
   Densities densities;
-  double compliance = 0;  ///< of the cells [J]
-  int iterations = 0;     ///< of all stages so far
-  double seconds = 0;     ///< CPU, likewise
+  double compliance = 0;  ///< Compliance on the cells [J].
+  int iterations = 0;     ///< Number of iterations of all stages so far.
+  double seconds = 0;     ///< CPU time of all stages so far [s].
 };
-/// The continuation from an even density, by the method of moving asymptotes.
-/// @return of every stage
-/// @throws Error (numerical) from the statics
+/// Runs the continuation from a uniform density, by the method of moving asymptotes.
+/// @returns the results of all stages
+/// @throws Error (numerical) from the static analysis
 std::vector<DensityDesign> design_by_densities(const DensityPlate& plate,
                                                mmc::ComplianceEvaluator& loads,
                                                const DensitySettings& settings);

@@ -1,5 +1,5 @@
-// The density method that the program's designs are compared with, by itself: its filter, its
-// derivatives beside differences, its contours beside known areas.
+// Shows that the density method used for comparisons is correct: its filter, its derivatives
+// against differences, its contours against known areas.
 
 #include "tests/benchmark/density_method.h"
 
@@ -15,8 +15,8 @@
 namespace flexmorph::benchmark {
 namespace {
 
-/// 12 x 6 cells, clamped at the left, with two loads, a strip of material at the right end and a
-/// void of four cells; a corner does not belong to the domain.
+/// 12 x 6 cells, clamped at the left, with two loads, a strip of given material at the right end
+/// and a void of four cells; one corner cell does not belong to the domain.
 struct SmallPlate {
   DensityPlate plate;
   mmc::ComplianceEvaluator loads;
@@ -55,8 +55,8 @@ VectorXd some_densities(Eigen::Index n) {
   return x;
 }
 
-// Weights of every row add up to one, and a field that is even stays so: up to the border, and
-// beside what does not belong to the domain.
+// The weights of every row sum up to one: a uniform field stays uniform, also at the border and
+// next to cells outside of the domain.
 TEST(DensityFilter, KeepsEvenDensities) {
   const SmallPlate small(false);
   const Grid& g = small.plate.plate.grid;
@@ -74,8 +74,9 @@ TEST(DensityFilter, KeepsEvenDensities) {
 class Derivatives : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(OfTheSumAndOfTheWorst, Derivatives, ::testing::Values(false, true));
 
-// Central differences with steps of 1e-5 of functions of the order of one, whose third derivatives
-// are β^3 times that: 1e-10 * 500, and round-off 1e-11; relative to the largest slope.
+// Central differences with steps of 1e-5. The functions are of the order of one, and their third
+// derivatives are β^3 times as large: the error is 1e-10 * 500, round-off 1e-11, relative to the
+// largest derivative.
 TEST_P(Derivatives, AreThoseOfDifferences) {
   SmallPlate small(GetParam());
   const Eigen::SparseMatrix<double> filter =
@@ -83,14 +84,14 @@ TEST_P(Derivatives, AreThoseOfDifferences) {
   const auto n = std::count(small.plate.given.begin(), small.plate.given.end(), 0);
   DensityProblem problem(small.plate, filter, small.loads, {3, 8, 0.6, 1}, some_densities(n));
   const VectorXd x = problem.start();
-  const optim::Response at = problem.evaluate(x);
+  const optim::ProblemValues at = problem.evaluate(x);
   ASSERT_EQ(at.g.size(), GetParam() ? 3 : 1);
   const double h = 1e-5;
   for (int k = 0; k < problem.n_variables(); k += 3) {
     VectorXd more = x, less = x;
     more[k] += h;
     less[k] -= h;
-    const optim::Response a = problem.evaluate(more), b = problem.evaluate(less);
+    const optim::ProblemValues a = problem.evaluate(more), b = problem.evaluate(less);
     EXPECT_NEAR((a.f - b.f) / (2 * h), at.df[k], 1e-6 * at.df.cwiseAbs().maxCoeff()) << k;
     for (Eigen::Index i = 0; i < at.g.size(); ++i)
       EXPECT_NEAR((a.g[i] - b.g[i]) / (2 * h), at.dg(i, k),
@@ -99,7 +100,7 @@ TEST_P(Derivatives, AreThoseOfDifferences) {
   }
 }
 
-// Given cells are what they are; the others are projected away from the middle.
+// Given cells keep their density; the densities of other cells are projected away from 0.5.
 TEST(DensityProblem, LeavesGivenCellsAlone) {
   SmallPlate small(false);
   const Eigen::SparseMatrix<double> filter =
@@ -117,8 +118,8 @@ TEST(DensityProblem, LeavesGivenCellsAlone) {
   }
 }
 
-// A few stages leave a cantilever stiffer than even densities, which have an eighth of the
-// stiffness of material here, and within its volume.
+// A few stages make a cantilever stiffer than uniform densities, which have an eighth of the
+// stiffness of material here, and satisfy its volume.
 TEST(DensityMethod, BeatsEvenDensities) {
   SmallPlate small(false);
   DensitySettings settings;
@@ -141,7 +142,7 @@ mmc::BodyProblem empty_problem(const Grid& grid) {
           .bands = {}};
 }
 
-/// A field that falls linearly with the distance from a point, at the centres of cells.
+/// Returns a field at the centres of cells that decreases linearly with the distance from a point.
 VectorXd cone(const Grid& g, const Vec2& tip, double slope) {
   VectorXd out(g.n_cells());
   for (int i = 0; i < g.nx; ++i)
@@ -150,7 +151,7 @@ VectorXd cone(const Grid& g, const Vec2& tip, double slope) {
   return out;
 }
 
-// Chords and means at nodes miss the curvature: a quarter of (h / r)² of the area.
+// Chords and nodal means neglect the curvature: the error is a quarter of (h / r)² of the area.
 TEST(Contour, OfAConeIsADisc) {
   const Grid g{0, 0, 2, 1, 80, 40};
   const double radius = 0.3;
@@ -162,8 +163,8 @@ TEST(Contour, OfAConeIsADisc) {
               0.5 * std::numbers::pi * g.dx() * g.dx());
 }
 
-// Around a corner of the domain a quarter of it is left, and the border closes it. Nodes of the
-// border have the mean of cells on one side of them: half a cell of slope there.
+// Around a corner of the domain a quarter of the disc remains and is closed by the border. Border
+// nodes have the mean of cells on one side only, which shifts the contour there by half a cell.
 TEST(Contour, EndsAtTheBorder) {
   const Grid g{0, 0, 2, 1, 160, 80};
   const double radius = 0.4;
@@ -172,7 +173,8 @@ TEST(Contour, EndsAtTheBorder) {
   EXPECT_NEAR(area(found), 0.25 * std::numbers::pi * radius * radius, 1e-3 * radius * radius);
 }
 
-// What is below has a ring of its own: an annulus around the largest values at a radius of 0.25.
+// Regions below the level have rings of their own: an annulus around the largest values at a radius
+// of 0.25.
 TEST(Contour, HasHoles) {
   const Grid g{0, 0, 1, 1, 60, 60};
   VectorXd field(g.n_cells());
@@ -185,7 +187,7 @@ TEST(Contour, HasHoles) {
   EXPECT_NEAR(area(found), std::numbers::pi * (0.16 - 0.01), 1e-3);
 }
 
-// Given material and voids are what they are, wherever densities say something else.
+// Given material and voids are kept, whatever the densities are.
 TEST(Contour, KeepsToGivenRegions) {
   const Grid g{0, 0, 1, 1, 20, 20};
   mmc::BodyProblem problem = empty_problem(g);

@@ -12,12 +12,12 @@
 namespace flexmorph::benchmark {
 namespace {
 
-/// Parts of a side that a contour keeps away from its ends, so that no two points coincide.
+/// Fraction of a side by which a contour stays away from its ends, so that no two points coincide.
 constexpr double kAway = 1e-6;
 
-/// Marching over the quarters of cells: triangles of a side of the cell and its centre. Corners of
-/// triangles are numbered, nodes first, then centres; so are the points where a contour crosses
-/// their sides, as it comes upon them.
+/// Contours by marching over quarters of cells: triangles made of a side of a cell and its centre.
+/// The corners of triangles are numbered, nodes first, then centres; then follow the points where a
+/// contour crosses sides, in the order in which they are found.
 class Marching {
  public:
   Marching(const mmc::Plate& plate, const VectorXd& cells, double level)
@@ -58,7 +58,7 @@ class Marching {
                     : grid_.cell_center(cell / grid_.ny, cell % grid_.ny);
   }
 
-  /// Of the side between two corners.
+  /// Returns the number of the crossing point on the side between two corners.
   int crossing(int a, int b) {
     const auto [low, high] = std::minmax(a, b);
     const auto [at, fresh] = crossings_.try_emplace(
@@ -94,7 +94,7 @@ class Marching {
     add_polygon(polygon);
   }
 
-  /// Sides that two triangles share, once in either sense, are none of the outline.
+  /// A side that two triangles share in opposite directions does not belong to the outline.
   void add_polygon(const std::vector<int>& polygon) {
     for (std::size_t k = 0; k < polygon.size(); ++k) {
       const int a = polygon[k], b = polygon[(k + 1) % polygon.size()];
@@ -120,7 +120,7 @@ class Marching {
   double level_;
   VectorXd values_;  // at corners
   std::map<std::pair<int, int>, int> crossings_;
-  std::vector<Vec2> points_;             // of these
+  std::vector<Vec2> points_;             // crossing points
   std::set<std::pair<int, int>> sides_;  // from a point to the next
 };
 
@@ -164,7 +164,7 @@ std::vector<Region> regions_above(const mmc::BodyProblem& problem, const VectorX
       outer.push_back(std::move(ring));
       continue;
     }
-    // Holes end where given material begins. (Material within a hole hangs on nothing.)
+    // Holes end where given material begins. (Material within a hole would not be connected.)
     const std::vector<std::vector<Vec2>> hole = {std::move(ring)};
     for (Region& part : unite(hole, domain, problem.solid)) voids.push_back(std::move(part.outer));
   }
@@ -172,10 +172,10 @@ std::vector<Region> regions_above(const mmc::BodyProblem& problem, const VectorX
 }
 
 DensityOutline outline_of(const mmc::BodyProblem& problem, const VectorXd& cells, double allowed) {
-  constexpr int kMost = 60;
+  constexpr int kMaximum = 60;
   DensityOutline out;
   double low = 0, high = 1;
-  for (int k = 0; k < kMost; ++k) {
+  for (int k = 0; k < kMaximum; ++k) {
     out.level = 0.5 * (low + high);
     out.regions = regions_above(problem, cells, out.level);
     const double excess = area(out.regions) / allowed - 1;

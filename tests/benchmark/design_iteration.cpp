@@ -1,8 +1,8 @@
-// CPU time of one whole design iteration of rotating_plate_v05 (400 x 40 cells, 160 components,
-// 100 loads): from the variables through TDF, statics and chain rule to the next variables of MMA.
-// The loads are those of its own motion, because their rank decides what compression is worth.
-// Beside it CHOLMOD's factorization, block solve and energy pass on the same matrix. One thread.
-// Prints a table and asserts nothing.
+// Prints the CPU time of one complete design iteration of rotating_plate_v05 (400 x 40 cells, 160
+// components, 100 loads): from the variables through TDF, static analysis and chain rule to the
+// next variables of MMA. The loads are those of its own motion, because their rank determines the
+// benefit of compression. For comparison it prints CHOLMOD's factorization, block solve and energy
+// pass with the same matrix. One thread. It checks nothing.
 
 #include <algorithm>
 #include <cstdio>
@@ -21,7 +21,7 @@ using namespace flexmorph;
 using namespace flexmorph::benchmark;
 
 /// Median CPU per iteration   [ms]
-/// Loads of the motion of the scene's first design.
+/// Returns the loads of the motion of the scene's first design.
 fem::EslSets loads_of(const cases::Scene& scene, const mmc::BodyProblem& problem) {
   cases::MotionRequest request;
   request.factors = {mmc::dynamic_factors(problem, problem.design.components())};
@@ -30,14 +30,15 @@ fem::EslSets loads_of(const cases::Scene& scene, const mmc::BodyProblem& problem
   return std::move(cases::run_motion(cases::PreparedCase(scene), request).loads.at(0));
 }
 
-/// Iterations of MMA on the design problem; one evaluation each unless a step is refused.
+/// Measures iterations of MMA on the design problem; each has one evaluation unless a step is
+/// refused.
 Iteration measure(const cases::Scene& scene, const mmc::BodyProblem& problem,
                   const fem::EslSets& loads, const mmc::ComplianceSettings& settings,
                   VectorXd* stiffness) {
   constexpr int kIterations = 25;
   const mmc::Ersatz ersatz(problem.grid, problem.bands.back().alpha, problem.solid, problem.empty);
   const auto start = problem.design.components();
-  const mmc::CellFactors first = ersatz.sharp(area_fractions(
+  const mmc::CellScaleFactors first = ersatz.crisp(area_fractions(
       problem.grid, start, problem.bands.back().min_half_thickness, problem.solid, problem.empty));
   mmc::ComplianceEvaluator compliance(loads, problem.section, settings, first.stiffness,
                                       first.mass);
@@ -57,7 +58,7 @@ void print(const char* name, const Iteration& t, double reference) {
               t.total / reference, 100 * (t.tdf + t.optimizer) / t.total);
 }
 
-/// Rows of one scene, all load definitions with and without compression.
+/// The measurements of one scene: all load definitions with and without compression.
 struct Bench {
   cases::Scene scene;
   mmc::BodyProblem problem;
@@ -71,7 +72,7 @@ struct Bench {
   Iteration measure(mmc::LoadDefinition definition, mmc::Support support, bool compress) {
     return ::measure(scene, problem, loads, {definition, support, compress}, &stiffness);
   }
-  VectorXd stiffness;  // factors of the last design measured
+  VectorXd stiffness;  // scale factors of the last measured design
 };
 
 void compare(Bench& bench, mmc::LoadDefinition definition, mmc::Support support, const char* name,
@@ -103,8 +104,8 @@ int main(int, char** argv) {
   compare(growing, LoadDefinition::inertia, Support::moving_root, "inertia, moving root",
           reference);
   compare(growing, LoadDefinition::frozen, Support::far_end, "frozen, far end", reference);
-  // Every place of the root, and every shape of the element that grows, brings loads of its own:
-  // compression is for plates that do not grow.
+  // Every location of the root and every shape of the growing element has loads of its own:
+  // compression is useful for plates that do not grow.
   std::printf("the same plate, as long as it gets but not growing\n");
   Bench still({"body.flow.speed=0", "body.length=1.0"});
   compare(still, LoadDefinition::inertia, Support::moving_root, "inertia, root at rest", reference);

@@ -1,10 +1,10 @@
-// Cost of the dynamics, by hand: CPU seconds of 1000 steps of the growing, rotating plate, 10 x 2
-// elements, without and with a design (20 x 20 cells per element; limit 6 s on one core), and of
-// one evaluation of force and tangent of one element.
+// Prints the cost of the dynamics; started by hand: CPU seconds of 1000 steps of the growing,
+// rotating plate with 10 x 2 elements, without and with a design (20 x 20 cells per element; limit
+// 6 s on one core), and of one evaluation of force and tangent of one element.
 //
 //   dynamics_speed [integrators]
 //
-// "integrators": instead, error against CPU time of both integrators on a planar pendulum.
+// "integrators": prints error against CPU time of both integrators on a planar pendulum instead.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -27,14 +27,14 @@ void run(const RotatingPlate& p, const char* design) {
   testing::Scene scene = testing::make_scene(p);
   const double start = cpu_seconds();
   const fem::MotionResult r =
-      fem::integrate(scene.model, scene.growths, {}, [](const fem::MotionStep&) {});
+      fem::integrate(scene.model, scene.moving_roots, {}, [](const fem::MotionStep&) {});
   const double spent = cpu_seconds() - start;
   std::printf("v %.1f %s %-8s %8.2f s  %5d steps %6d Newton iterations %5d factorizations\n",
               p.speed, name(p.shapes), design, spent, r.counts.steps, r.counts.newton,
               r.counts.factorizations);
 }
 
-/// Mean CPU time [us] of f over enough repetitions for 0.2 s.
+/// Returns the mean CPU time [us] of f over enough repetitions for 0.2 s.
 template <class F>
 double microseconds(const F& f) {
   int n = 0;
@@ -71,8 +71,8 @@ void evaluate(const RotatingPlate& p, const char* design) {
       name(p.shapes), design, force, tangent, mean_force, mean_tangent, prepare);
 }
 
-/// Error at the end against CPU time of the planar pendulum: 0.3 x 0.3 x 0.01 m, E 1e6, corner
-/// pinned, released from the horizontal under gravity, 4 x 4 h16, 0.2 s; the reference is
+/// Prints the final error against CPU time of a planar pendulum: 0.3 x 0.3 x 0.01 m, E 1e6, pinned
+/// at a corner, released from the horizontal under gravity, 4 x 4 h16, 0.2 s. The reference is
 /// generalized-alpha with rho_inf 0.9 and steps of 0.0125 ms, extrapolated.
 void compare_integrators() {
   const Vec2 g(0, -9.81);
@@ -82,10 +82,11 @@ void compare_integrators() {
   terms.push_back(fem::make_membrane(section));
   terms.push_back(fem::make_gravity(section, g));
   fem::Workspace model;
-  model.add_body("plate",
-                 std::make_unique<fem::AncfPlate>(2, ShapeSet::h16, testing::even_lines(0, 0.3, 4),
-                                                  testing::even_lines(0, 0.3, 4)),
-                 section, std::move(terms));
+  model.add_body(
+      "plate",
+      std::make_unique<fem::AncfPlate>(2, ShapeSet::h16, testing::uniform_lines(0, 0.3, 4),
+                                       testing::uniform_lines(0, 0.3, 4)),
+      section, std::move(terms));
   model.add_joint(fem::make_pin("pin", "plate", {0, 0}, [](double) { return fem::FrameMotion{}; }));
   const double end = 0.2;
   fem::StepCounts counts;

@@ -1,8 +1,8 @@
-// Cost of one element evaluation: force, and force with tangent, of every term of the table that
-// acts on elements, in ns per element on one core, beside the operations counted and the rate of a
-// dense product; and of three ways to evaluate the in-plane force of a spatial h12 element: the
-// full tensors as P (11) prints them, their entries that are not zero, and 7 x 7 Gauss points. All
-// of them must agree to 1e-12. Prints tables; fails only where the ways disagree.
+// Prints the cost of one element evaluation: force, and force with tangent, of every term of the
+// table that acts on elements, in ns per element on one core, together with the counted operations
+// and the rate of a dense product. It also prints three methods for the in-plane force of a spatial
+// h12 element: the full tensors as P (11) prints them, their nonzero entries, and 7 x 7 Gauss
+// points. All three must agree to 1e-12, otherwise the program fails.
 //
 //   element_speed
 #include <Eigen/SparseCore>
@@ -26,8 +26,8 @@ using testing::ShapeSet;
 
 const PlaneSection kSection{0.01, 1e5, 0.3, 7810};
 
-/// CPU time [ns] of one call: the least of many batches of 0.1 ms or more, because others use the
-/// machine, too.
+/// Returns the CPU time [ns] of one call: the least of many batches of at least 0.1 ms, because
+/// other processes use the machine, too.
 template <class F>
 double nanoseconds(const F& f) {
   const auto batch = [&](int n) {
@@ -47,7 +47,7 @@ double nanoseconds(const F& f) {
   return 1e9 * best;
 }
 
-/// Best rate of a dense product [operations per ns].
+/// Returns the best rate of a dense product [operations per ns].
 double dgemm_rate() {
   double best = 0;
   for (const int n : {160, 240, 320, 500}) {
@@ -64,7 +64,7 @@ struct Operations {
   double force = 0, both = 0;
 };
 
-/// Additions and multiplications of the kernels of gram.h, by the loops they run.
+/// Returns the additions and multiplications of the kernels of gram.h, counted by their loops.
 template <int kKinds>
 Operations gram_operations(int d, bool classes) {
   using N = gram::Numbering<kKinds>;
@@ -84,29 +84,29 @@ Operations gram_operations(int d, bool classes) {
   return out;
 }
 
-/// The same of bending_kernels.h with n x n points; a point alone takes 96 (what force and energy
-/// share), 30 (force) and 1127 (second derivatives).
+/// Returns the operations of bending_kernels.h with n x n points. A point takes 96 operations
+/// (shared by force and energy), 30 (force) and 1127 (second derivatives).
 Operations bending_operations(int n, bool mixed) {
   const double products = mixed ? 16 : 12, points = n * n,
                shared = 2 * 9 * products * n + 2 * 60 * points + 96 * points;
   Operations out;
   out.force = 2 * shared - 96 * points + 30 * points;
   out.both = out.force + shared + 1127 * points + 6 * points * 2 * (100 + 240);
-  const double of[2] = {4, mixed ? 4.0 : 2.0};  // functions along m beside function j along n
+  const double of[2] = {4, mixed ? 4.0 : 2.0};  // functions along m for function j along n
   for (int j = 0; j < 4; ++j)
     for (int l = 0; l < 4; ++l) out.both += n * (l >= j ? 6 : 3) * of[l % 2] * (15 + 6 * of[j % 2]);
   return out;
 }
 
-/// 8 x 8 elements with random unknowns about the plate at rest.
+/// 8 x 8 elements with random unknowns about the reference configuration of the plate.
 struct Plate {
   AncfPlate element;
-  Factors factors;
-  std::vector<Lanes> q, zero, force, tangent;
+  ScaleFactors factors;
+  std::vector<Pack> q, zero, force, tangent;
   int n_local;
 
   Plate(ShapeSet shapes, int dim, bool designed)
-      : element(dim, shapes, testing::even_lines(0, 0.3, 8), testing::even_lines(0, 0.3, 8)),
+      : element(dim, shapes, testing::uniform_lines(0, 0.3, 8), testing::uniform_lines(0, 0.3, 8)),
         n_local(element.n_shapes() * dim) {
     if (designed) {
       factors.grid = {0, 0, 0.3, 0.3, 64, 64};
@@ -115,7 +115,7 @@ struct Plate {
     }
     const auto size = static_cast<std::size_t>(n_local);
     q.resize(8 * size);
-    zero.assign(8 * size, Lanes{});
+    zero.assign(8 * size, Pack{});
     force.resize(size);
     tangent.resize(size * size);
     const MatrixXd shape = testing::random_shape(element, 0.1, 1);
@@ -167,7 +167,7 @@ void term_rows(double rate) {
         }
 }
 
-/// Spatial h12 element by the paper's ways, from shape functions at 7 x 7 points.
+/// A spatial h12 element by the methods of the paper, from shape functions at 7 x 7 points.
 class Spatial {
  public:
   static constexpr int kShapes = 12, kLocal = 36, kPoints = 49;
@@ -175,8 +175,8 @@ class Spatial {
   using Tangent = Eigen::Matrix<double, kLocal, kLocal>;
 
   explicit Spatial(const AncfPlate& plate) : c_(kSection.thickness * kSection.elasticity()) {
-    plate.tabulate(0, 12, Tabulate::gradient, {}, FactorKind::none, table_);
-    // U = ½ Σ T_ij,kl q_i q_j q_k q_l - ½ Σ c_ij q_i q_j, as εᵀ C ε is quadratic in qᵀ S q.
+    plate.tabulate(0, 12, Tabulate::gradient, {}, ScaleFactorKind::none, table_);
+    // U = ½ Σ T_ij,kl q_i q_j q_k q_l - ½ Σ c_ij q_i q_j, because εᵀ C ε is quadratic in qᵀ S q.
     std::vector<Eigen::Triplet<double>> first, second;
     scalar_.setZero(144, 144);
     linear_.setZero(kShapes, kShapes);
@@ -277,13 +277,13 @@ class Spatial {
   MatrixXd geometric_ = MatrixXd(kShapes, kShapes);
 };
 
-/// @returns whether all ways agree with the term.
+/// @returns true if all methods agree with the term.
 bool ways() {
   Plate p(ShapeSet::h12, 3, false);
   const BodyTerm term = make_term("membrane", kSection);
   term->prepare(p.element, p.factors, true);
-  std::fill(p.force.begin(), p.force.end(), Lanes{});
-  std::fill(p.tangent.begin(), p.tangent.end(), Lanes{});
+  std::fill(p.force.begin(), p.force.end(), Pack{});
+  std::fill(p.tangent.begin(), p.tangent.end(), Pack{});
   term.add_forces(p.batch(0), p.force.data());
   term.add_tangents(p.batch(0), {1, 0, 0}, p.tangent.data());
   Spatial::Force q, expected, f;

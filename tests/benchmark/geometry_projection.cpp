@@ -11,14 +11,14 @@
 namespace flexmorph::benchmark {
 namespace {
 
-constexpr double kRadius = 0.5, kLeast = 1e-6;
+constexpr double kRadius = 0.5, kMinimum = 1e-6;
 constexpr double kAggregation = 10, kSaturation = 100, kStiffnessPower = 3;
-constexpr double kOutline = 1e-3;  // how far outlines may be off [m]
+constexpr double kOutline = 1e-3;  // allowed deviation of outlines [m]
 
-/// Part of a disc that is inside of a straight line at a distance from its centre.
+/// Returns the fraction of a disc that is inside of a straight line at a distance from its centre.
 double part_inside(double outside) {
   const double t = std::clamp(outside / kRadius, -1.0, 1.0);
-  return kLeast + (1 - kLeast) * (std::acos(t) - t * std::sqrt(1 - t * t)) / std::numbers::pi;
+  return kMinimum + (1 - kMinimum) * (std::acos(t) - t * std::sqrt(1 - t * t)) / std::numbers::pi;
 }
 
 double element_part(const ProjectedFeature& feature, const Vec2& center) {
@@ -29,7 +29,7 @@ double element_part(const ProjectedFeature& feature, const Vec2& center) {
   return 0.25 * sum;
 }
 
-/// log(mean exp(k z))/k.
+/// Returns log(mean exp(k z))/k.
 double aggregated(const VectorXd& z) {
   const double largest = z.maxCoeff();
   return largest + std::log((kAggregation * (z.array() - largest)).exp().mean()) / kAggregation;

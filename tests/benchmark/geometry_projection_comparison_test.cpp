@@ -1,5 +1,5 @@
 // The 18-bar cantilever of generalized geometry projection: the program's design from the published
-// start, in the published program's own measure. Prints what both say; the command is in
+// start, evaluated by the measure of the published program. Prints both values; the command is in
 // tests/README.md.
 
 #include <gtest/gtest.h>
@@ -18,11 +18,11 @@ namespace flexmorph::benchmark {
 namespace {
 
 constexpr double kVolume = 0.4;
-/// Of the best run that is published: 4 x 320 iterations, the radius of W from 2 to 1/2
-/// (docs of github.com/SimoneConiglio/generalized_geometry_projection, the authors' later program).
+/// Compliance of the best published run: 4 x 320 iterations, the radius of W from 2 to 1/2 (docs of
+/// github.com/SimoneConiglio/generalized_geometry_projection, the authors' later program).
 constexpr double kPublished = 73.52;
 
-/// Cells are a quarter of the measure's elements.
+/// The cells have a quarter of the side of the measure's elements.
 constexpr const char* kCase = R"(
 title = "Short cantilever of generalized geometry projection"
 [domain]
@@ -50,14 +50,15 @@ min_feature = 0.0
 name = "mma"
 max_iterations = 320
 )";
-/// The published start, disturbed (other seeds end up to 2 % higher); then what it came to,
-/// with more material: elements that one bar fills by half have 0.31 in the measure, in stiffness
-/// and density alike, so that what it calls 0.4 is more by area.
+/// The first run begins with the published start, disturbed (other seeds give up to 2 % more). The
+/// second run continues from its result with more material: an element that is half filled by one
+/// bar has 0.31 in the measure, in stiffness and density, therefore 0.4 in the measure is more by
+/// area.
 const std::vector<std::string> kFirst = {"design.jitter=0.1", "design.seed=1",
                                          "design.max_volume=0.4"};
 const std::vector<std::string> kSecond = {"design.max_volume=0.425"};
 
-/// Two crossed bars at nine places, as long and thick as the published ones.
+/// Returns two crossed bars at nine locations, as long and thick as the published ones.
 std::vector<Component> published_bars() {
   std::vector<Component> out;
   const double half = std::hypot(60 / 3., 30 / 3.) + 1, angle = std::atan2(30, 60);
@@ -79,21 +80,21 @@ std::string csv(std::span<const Component> components) {
   return out.str();
 }
 
-/// The case from a start.
+/// Returns the case with a start layout.
 std::unique_ptr<ComparedCase> case_from(const Scratch& scratch, std::span<const Component> start,
                                         std::vector<std::string> changes) {
   changes.push_back("design.start='" + scratch.write("bars.csv", csv(start)) + "'");
   return std::make_unique<ComparedCase>(scratch.write("cantilever.toml", kCase), changes);
 }
 
-/// How elements are made of a design.
+/// How elements are computed from a design.
 enum class Elements { each_component, their_union, area_fractions };
 
 struct Measured {
   double compliance = 0, volume = 0, thicker = 0;
 };
 
-/// All components thicker by so much on each side [m].
+/// Returns all components thickened by `by` on each side [m].
 std::vector<Component> thicker(std::vector<Component> components, double by) {
   for (Component& c : components)
     for (double* const half : {&c.c1, &c.c2, &c.c3}) *half += by;
@@ -114,7 +115,7 @@ ProjectedElements elements_of(const Grid& grid, std::span<const Component> compo
   return project(grid, features);
 }
 
-/// With the components as thick as they may be: the measure's own volume decides.
+/// Returns the measure with the components as thick as the volume of the measure permits.
 Measured measured(const std::vector<Component>& components, double min_half_thickness,
                   Elements how) {
   const Grid grid{0, 0, 60, 30, 60, 30};

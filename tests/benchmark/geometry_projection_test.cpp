@@ -1,5 +1,5 @@
-// Designs as the published program of generalized geometry projection sees them: the measure by
-// itself, beside the first line that the program prints.
+// Shows that the measure of the published program of generalized geometry projection is reproduced:
+// it gives the first line that this program prints.
 
 #include "tests/benchmark/geometry_projection.h"
 
@@ -11,7 +11,7 @@
 namespace flexmorph::benchmark {
 namespace {
 
-/// The program's start: two crossed bars of half a mass at nine places.
+/// Returns the start of the published program: two crossed bars of mass 0.5 at nine locations.
 std::vector<ProjectedFeature> published_start() {
   std::vector<ProjectedFeature> out;
   const double length = 2 * std::hypot(60 / 3., 30 / 3.), angle = std::atan2(30, 60);
@@ -22,7 +22,8 @@ std::vector<ProjectedFeature> published_start() {
   return out;
 }
 
-// "It.: 1 Obj.: 4.236e+04 Vol.: 0.074" (GGP.html of the program): all digits that are printed.
+// Reference: "It.: 1 Obj.: 4.236e+04 Vol.: 0.074" (GGP.html of the program); all printed digits are
+// compared.
 TEST(GeometryProjection, BeginsAsThePublishedProgramDoes) {
   const Grid grid{0, 0, 60, 30, 60, 30};
   const ProjectedElements start = project(grid, published_start());
@@ -30,8 +31,8 @@ TEST(GeometryProjection, BeginsAsThePublishedProgramDoes) {
   EXPECT_NEAR(start.volume(), 0.074, 5e-4);
 }
 
-// Far inside of one feature elements are full but for the rounding of the saturation, log 2 / p /
-// (1 - s0); far outside they have what is left of the least part.
+// Far inside of a feature elements are full, except for the rounding of the saturation, log 2 / p /
+// (1 - s0); far outside they have the least fraction.
 TEST(GeometryProjection, IsFullInsideAndEmptyOutside) {
   const Grid grid{0, 0, 12, 12, 12, 12};
   for (const int n : {1, 18}) {
@@ -42,14 +43,15 @@ TEST(GeometryProjection, IsFullInsideAndEmptyOutside) {
     EXPECT_NEAR(found.density[grid.cell(6, 6)], 1, 7e-3);
     EXPECT_NEAR(found.density[grid.cell(6, 0)], 0, 1e-6);
     EXPECT_EQ(found.density, found.stiffness);
-    // Half of it is inside: the mean of 18 sees less of it than one does.
+    // Half of the element is inside: the mean over 18 features gives less than a single feature
+    // does.
     features[0] = round_bar({6, 6}, 100, 5, 0, 1);
     EXPECT_NEAR(project(grid, features).density[grid.cell(6, 3)], n == 1 ? 0.496 : 0.308, 5e-3);
   }
 }
 
-// One of our components and a bar of straight sides have the same elements between their ends, and
-// so have two halves of it as one feature.
+// A component of this program and a bar with straight sides give equal elements between their ends,
+// and so do two halves of the component as one feature.
 TEST(GeometryProjection, SeesComponentsByTheirOutlines) {
   const Grid grid{0, 0, 20, 10, 20, 10};
   const Component ours{{10, 5}, 12, 0.1, 1.3, 1.3, 1.3};

@@ -7,16 +7,16 @@
 #include "optim/mmc/problem/mmc_problem.h"
 #include "optim/optimizer.h"
 
-/// Where the time of a design iteration goes.
+/// Measurement of the parts of a design iteration.
 namespace flexmorph::benchmark {
 
-/// Median CPU time of an iteration and of its parts [ms].
+/// Median CPU times of an iteration and of its parts [ms].
 struct Iteration {
   double tdf = 0, factor = 0, solve = 0, sensitivity = 0, optimizer = 0, total = 0;
   int right_hand_sides = 0;
 };
 
-/// Iterations of MMA that take one evaluation each, after the first two.
+/// Measures iterations of MMA with one evaluation each, without the first two.
 inline Iteration measure_iterations(mmc::MmcProblem& problem, const optim::Settings& settings,
                                     int right_hand_sides) {
   std::vector<double> parts[6];

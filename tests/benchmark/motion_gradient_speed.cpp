@@ -1,11 +1,11 @@
-// Cost of the gradient of a motion, by hand: CPU seconds and peak memory of the growing, rotating
-// plate on the cells of its design's start layout, of its motion alone, of that with a balance of
-// energy, and of the strain energy at its load times with all derivatives.
+// Prints the cost of the gradient of a motion; started by hand: CPU seconds and peak memory for the
+// growing, rotating plate on the cells of its design's start layout, for the motion only, for the
+// motion with an energy balance, and for the strain energy at its load times with all derivatives.
 //
 //   motion_gradient_speed <cell [m]> <step [s]> <what> [objectives [checkpoints [end [s]]]]
 //
-// what: motion, balance or gradient. A process each, for the memory. With 3 objectives: deflection
-// and force of the root, too.
+// what: motion, balance or gradient. Each needs a process of its own, because of the memory. With 3
+// objectives: also the deflection, and the force at the root.
 #include <sys/resource.h>
 
 #include <cstdio>
@@ -23,7 +23,7 @@ using namespace flexmorph::cases;
 
 std::vector<fem::MotionObjective> objectives_of(const Scene& scene, const Mechanism& m, size_t n) {
   using Times = fem::MotionObjective::Times;
-  const fem::Growth& g = m.growths.at(0);
+  const fem::MovingRoot& g = m.moving_roots.at(0);
   std::vector<fem::MotionObjective> out = {
       {fem::measure_strain_energy(), Times::stops, 1},
       {fem::measure_deflection(g.body, {scene.body(g.body).longest(scene.time.end), 0}, g.hub),
@@ -50,16 +50,18 @@ void measure(const std::string& cell, double step, const std::string& what, size
   fem::StepCounts counts;
   if (what == "gradient") {
     const auto objectives = objectives_of(scene, m, n_objectives);
-    const fem::MotionGradients g = fem::motion_gradients(
-        m.model, m.growths, m.motion, objectives, {.checkpoints = checkpoints, .parameters = {}});
+    const fem::MotionGradients g =
+        fem::motion_gradients(m.model, m.moving_roots, m.motion, objectives,
+                              {.checkpoints = checkpoints, .parameters = {}});
     counts = g.motion.counts;
     std::printf("motion %.2f s, adjoint %.2f s: %d factorizations, %d iterations; ",
                 g.seconds_motion, g.seconds_adjoint, g.factorizations, g.iterations);
     for (const fem::MotionGradient& of : g.of)
       std::printf("J %.12g |dJ| %.9g; ", of.value,
-                  std::hypot(of.by_factors[0].stiffness.norm(), of.by_factors[0].mass.norm()));
+                  std::hypot(of.d_factors[0].stiffness.norm(), of.d_factors[0].mass.norm()));
   } else {
-    counts = fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {}).counts;
+    counts =
+        fem::integrate(m.model, m.moving_roots, m.motion, [](const fem::MotionStep&) {}).counts;
   }
   rusage used{};
   getrusage(RUSAGE_SELF, &used);

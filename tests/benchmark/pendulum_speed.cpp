@@ -1,19 +1,19 @@
-// Cost of a plate in space: the plate pendulum of Sun et al. (2018), section 4.1. 0.3 x 0.3 x 0.01
-// m, 7810 kg/m³, ν 0.3, one corner pinned, released from the horizontal under gravity; inertia,
-// membrane and bending.
+// Prints the cost of a plate in space: the plate pendulum of Sun et al. (2018), section 4.1. 0.3 x
+// 0.3 x 0.01 m, 7810 kg/m³, ν 0.3, one corner pinned, released from the horizontal under gravity;
+// inertia, membrane and bending.
 //
 //   pendulum_speed [mesh shape dt end E]
 //   pendulum_speed growth [shape]
 //
-// growth: 40 steps with E 1e8 on 8 x 8 to 64 x 64 elements (h16), and exponents of the cost by the
-// number of unknowns. mesh: elements per side (8), shape: h12 or h16 (h12), dt and end [s] (5e-4,
-// 0.3), E [Pa] (1e5).
+// growth: 40 steps with E 1e8 on 8 x 8 to 64 x 64 elements (h16), and exponents of the cost as
+// functions of the number of unknowns. mesh: elements per side (8), shape: h12 or h16 (h12), dt and
+// end [s] (5e-4, 0.3), E [Pa] (1e5).
 //
-// Prints the free corner beside that of a public plate with the same energy (Exudyn 1.11,
-// ANCFThinPlate, 8 x 8, dt 5e-4: 6.7 ms of CPU time per step), CPU time by phases, the counts of
-// Newton's method, the drift of the energy, and memory. A phase is the CPU time of one call,
-// measured at the states of 0.1 s, 0.2 s ... and the end, times the number of calls; the rest is
-// what is left of the whole.
+// Prints the free corner and, for comparison, that of a public plate element with the same energy
+// (Exudyn 1.11, ANCFThinPlate, 8 x 8, dt 5e-4: 6.7 ms of CPU time per step), CPU time of phases,
+// the counts of Newton's method, the drift of the energy, and memory. The time of a phase is the
+// CPU time of one call, measured at the states of 0.1 s, 0.2 s ... and the end, times the number of
+// calls; the rest is the remaining time.
 #include <sys/resource.h>
 
 #include <Eigen/QR>
@@ -35,7 +35,7 @@ namespace {
 using namespace flexmorph;
 using testing::ShapeSet;
 
-/// CPU time [s] of one call: the mean over 20 ms or more.
+/// Returns the CPU time [s] of one call: the mean over at least 20 ms.
 template <class F>
 double seconds(const F& f) {
   f();
@@ -54,7 +54,7 @@ struct Phases {
 };
 
 Phases measure(fem::Workspace& model, const fem::State& x, double h) {
-  // As in generalized-alpha with ρ = 0.8 at this step.
+  // The weights are those of generalized-alpha with ρ = 0.8 at this step.
   const double beta_h2 = h * h * 0.25 * (1 + 0.2 / 1.8) * (1 + 0.2 / 1.8);
   fem::Constraints c;
   model.constraints(x, c);
@@ -69,7 +69,7 @@ Phases measure(fem::Workspace& model, const fem::State& x, double h) {
     for (fem::SparseMatrix::InnerIterator entry(a, column); entry; ++entry)
       for (const Eigen::Index k : {entry.row(), entry.col()})
         if (k < model.n_dofs()) entry.valueRef() /= scales[k];
-  fem::UnsymmetricSolver solver;
+  fem::DirectSolver solver;
   solver.analyze(a);
   out.factor = seconds([&] { solver.factorize(a); });
   if (!solver.is_cholesky() && solver.border().empty()) std::printf("NOT BY CHOLESKY\n");
@@ -79,12 +79,12 @@ Phases measure(fem::Workspace& model, const fem::State& x, double h) {
   return out;
 }
 
-struct Place {
+struct Location {
   double t, x, y, z;
 };
-constexpr Place kPublic[] = {{0.1, 0.30000, 0.30000, -0.049049},
-                             {0.2, 0.29568, 0.29568, -0.196177},
-                             {0.3, 0.23272, 0.23272, -0.43761}};
+constexpr Location kPublic[] = {{0.1, 0.30000, 0.30000, -0.049049},
+                                {0.2, 0.29568, 0.29568, -0.196177},
+                                {0.3, 0.23272, 0.23272, -0.43761}};
 
 fem::Workspace pendulum(int mesh, ShapeSet shapes, double youngs_modulus) {
   testing::SpacePlate plate;
@@ -93,11 +93,11 @@ fem::Workspace pendulum(int mesh, ShapeSet shapes, double youngs_modulus) {
   plate.shapes = shapes;
   plate.section = {0.01, youngs_modulus, 0.3, 7810};
   plate.terms = {"inertia", "membrane", "bending"};
-  plate.hold({{fem::HoldPlace::at({0, 0}), fem::NodeVector::r, {0, 1, 2}}});
+  plate.hold({{fem::HoldLocation::at({0, 0}), fem::NodeVector::r, {0, 1, 2}}});
   return plate.model(fem::make_gravity(plate.section, testing::vector(0, 0, -9.81)));
 }
 
-/// What a run cost [s]: per call of a phase (mean over the states looked at) and per step.
+/// Costs of a run [s]: per call of a phase (mean over the measured states) and per step.
 struct Costs {
   int unknowns = 0;
   Phases one;
@@ -162,7 +162,7 @@ Costs run(int mesh, ShapeSet shapes, double h, double end, double youngs_modulus
     asymmetry = std::max(asymmetry, std::abs(corner.x() - corner.y()));
     if (!look) continue;
     std::printf("t %.4f  corner %9.6f %9.6f %9.6f", x.t, corner.x(), corner.y(), corner.z());
-    for (const Place& p : kPublic)
+    for (const Location& p : kPublic)
       if (std::abs(p.t - x.t) < 1e-9) std::printf("   public %9.6f %9.6f %9.6f", p.x, p.y, p.z);
     std::printf("   smallest area ratio %.3f\n", model.smallest_area_ratio(x));
     phases.push_back(measure(model, x, h));
@@ -176,7 +176,8 @@ Costs run(int mesh, ShapeSet shapes, double h, double end, double youngs_modulus
   return out;
 }
 
-/// Exponents of the costs by the number of unknowns: least squares of logarithms.
+/// Prints the exponents of the costs as functions of the number of unknowns, by least squares of
+/// logarithms.
 void growth(ShapeSet shapes) {
   std::vector<Costs> all;
   for (const int mesh : {8, 16, 32, 64}) all.push_back(run(mesh, shapes, 5e-4, 0.02, 1e8));

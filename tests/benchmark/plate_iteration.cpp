@@ -1,13 +1,13 @@
-// CPU time of one whole design iteration of a plate at rest, a cantilever with the settings of
-// short_beam: from the variables through TDF, ersatz, statics and chain rule to the next variables
-// of MMA. One core. Prints tables and asserts nothing.
+// Prints the CPU time of one complete design iteration of a static plate, a cantilever with the
+// settings of short_beam: from the variables through TDF, ersatz material, static analysis and
+// chain rule to the next variables of MMA. One core. It checks nothing.
 //
 //   plate_iteration [large]
 //
-// Without an argument: 400 x 80 cells with 672 variables under 1, 20 and 100 loads, beside CHOLMOD
-// (factorization, solve of all right-hand sides, one pass for the energies) on the matrix of the
-// same design; and the two sizes of the published program. With `large`: 1600 x 320 cells, 20
-// loads.
+// Without an argument: 400 x 80 cells with 672 variables under 1, 20 and 100 loads, compared with
+// CHOLMOD (factorization, solve of all right-hand sides, one pass for the energies) on the matrix
+// of the same design; and the two sizes of the published program. With `large`: 1600 x 320 cells,
+// 20 loads.
 
 #include <sys/resource.h>
 
@@ -37,24 +37,24 @@ using namespace flexmorph::benchmark;
 
 const fem::PlaneSection kUnit{1, 1, 0.3, 0};
 
-/// What is measured: a cantilever clamped at its left edge.
+/// The measured plate: a cantilever clamped at its left edge.
 struct Plate {
   Grid grid;
-  int boxes_x, boxes_y;  // of two crossing components each
+  int boxes_x, boxes_y;  // each box has two crossing components
 };
 const Plate kStrip{{.width = 5, .height = 1, .nx = 400, .ny = 80}, 24, 2};
 const Plate kPublishedStrip{{.width = 5, .height = 1, .nx = 400, .ny = 80}, 10, 2};
 const Plate kShortBeam{{.width = 2, .height = 1, .nx = 80, .ny = 40}, 4, 2};
 const Plate kLarge{{.width = 5, .height = 1, .nx = 1600, .ny = 320}, 24, 2};
 
-/// A unit force at mid-height of the free end.
+/// Returns a unit force at mid-height of the free end.
 std::vector<mmc::LoadCase> tip_load(const Grid& g) {
   return {{"tip", 1, {{g.node(g.nx, g.ny / 2), Vec2(0, -1)}}}};
 }
 
-/// A unit load that moves along the upper edge from the clamp to the free end: n places. It is
-/// spread as a bell (standard deviation a third of the height), as a wheel on a rail spreads its
-/// own: many of its places are few directions.
+/// Returns a unit load that moves along the upper edge from the clamp to the free end, at n
+/// locations. It has a bell-shaped distribution (standard deviation: a third of the height), as the
+/// force of a wheel under a rail has: its many locations span few directions.
 std::vector<mmc::LoadCase> moving_load(const Grid& g, int n) {
   const double deviation = g.height / 3;
   std::vector<mmc::LoadCase> out;
@@ -79,7 +79,7 @@ std::vector<fem::HeldUnknown> clamped_left(const Grid& g) {
   return held;
 }
 
-/// The settings of short_beam on another mesh.
+/// Returns a design with the settings of short_beam on another mesh.
 mmc::Design initial_design(const Plate& plate, double min_thickness) {
   const Grid& g = plate.grid;
   const double wide = g.width / plate.boxes_x, high = g.height / plate.boxes_y;
@@ -91,7 +91,7 @@ mmc::Design initial_design(const Plate& plate, double min_thickness) {
           {0.5 * diagonal, min_thickness, 0.3 * g.height}};
 }
 
-/// Iterations of MMA with one evaluation each, after the first two.
+/// Measures iterations of MMA with one evaluation each, without the first two.
 Iteration measure(const Plate& plate, const std::vector<mmc::LoadCase>& loads, bool compress,
                   VectorXd* stiffness = nullptr, int iterations = 17) {
   const Grid& g = plate.grid;
@@ -119,7 +119,7 @@ void print(const std::string& name, const Iteration& t, double reference) {
               t.total / reference);
 }
 
-/// CHOLMOD with each of its orderings. @return the least total.
+/// Prints the times of CHOLMOD with each of its orderings. @returns the least total
 double print_reference(const VectorXd& stiffness, int n_loads) {
   double least = 1e300;
   for (const auto& [name, ordering] :
@@ -151,7 +151,7 @@ void against_cholmod() {
   }
 }
 
-/// Seconds per iteration of the published program in Octave, one load.
+/// Compares with the seconds per iteration of the published program in Octave, for one load.
 void against_published() {
   std::printf("\none load: CPU ms per design iteration, published program in Octave = 1\n");
   for (const auto& [name, plate, published] :

@@ -1,5 +1,5 @@
-// Shipped cases with published or closed-form numbers, as they are, but for one cycle of each
-// design: what they expect of themselves holds. Cases without a design warn of nothing.
+// Shows that shipped cases with published or closed-form numbers, unchanged except for one cycle of
+// each design, satisfy their table [expect]. Cases without a design must give no warnings.
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "fem/solve/static_solver.h"
 #include "geometry/grid.h"
 
-/// What benchmarks of a design iteration measure against, and with.
+/// The reference (CHOLMOD) and the clock for benchmarks of design iterations.
 namespace flexmorph::benchmark {
 
 /// The design mesh of rotating_plate_v05.
@@ -14,16 +14,17 @@ inline const Grid kGrid{0, -0.05, 1.0, 0.1, 400, 40};
 inline const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 inline constexpr int kLoads = 100;
 
-/// Process CPU milliseconds of a call: median.
+/// Returns the median CPU time of a call of this process [ms].
 double milliseconds(const std::function<void()>& call, int repeats = 9);
 
-/// How CHOLMOD orders: one method, or the best of those it tries by default (AMD and METIS).
+/// Ordering method of CHOLMOD: one method, or the best of those that it tries by default (AMD and
+/// METIS).
 enum class Ordering { natural, amd, metis, best };
 
-/// CHOLMOD used as its manual says, on a plate clamped at one column of nodes.
+/// CHOLMOD used according to its manual, on a plate clamped at one column of nodes.
 class Reference {
  public:
-  /// @param factor  stiffness factors (n_cells)
+  /// @param factor  scale factors of the stiffness (n_cells)
   Reference(const VectorXd& factor, int root, Ordering ordering, const Grid& grid = kGrid,
             const fem::PlaneSection& section = kSection);
   ~Reference();
@@ -31,7 +32,7 @@ class Reference {
   void factorize();
   void set_loads(int n_loads);
   void solve();
-  /// Energies of all cells, load by load, with the 8 x 8 product.
+  /// Computes the energies of all cells, load by load, with the 8 x 8 product.
   void energies(VectorXd& out) const;
 
  private:
@@ -39,8 +40,8 @@ class Reference {
   std::unique_ptr<Impl> impl_;
 };
 
-/// CPU of one factorization, one block solve of all right-hand sides and one pass for the energies
-/// of all cells and loads   [ms]
+/// CPU time of one factorization, one block solve of all right-hand sides and one pass for the
+/// energies of all cells and loads [ms].
 struct ReferenceTimes {
   double factor = 0, solve = 0, energies = 0;
   double total() const { return factor + solve + energies; }

@@ -1,6 +1,6 @@
-// CPU time of the static part of one design iteration, 400 x 40 cells and 100 loads whose root
-// moves from column 200 to 0, beside CHOLMOD used directly; of the moving root beside refactoring;
-// and of load compression. One thread. Prints tables and asserts nothing.
+// Prints the CPU time of the static part of one design iteration with 400 x 40 cells and 100 loads
+// whose root moves from column 200 to 0, compared with CHOLMOD used directly; of the moving root
+// compared with refactoring; and of load compression. One thread. It checks nothing.
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ namespace {
 using namespace flexmorph;
 using namespace flexmorph::benchmark;
 
-/// Half of the cells solid, in patches of 4 x 4.
+/// Returns a design whose cells are solid with probability 1/2, in patches of 4 x 4.
 VectorXd random_design(unsigned seed, double empty) {
   std::mt19937 engine(seed);
   std::bernoulli_distribution solid(0.5);
@@ -34,8 +34,8 @@ VectorXd random_design(unsigned seed, double empty) {
   return factor;
 }
 
-/// A turning, growing plate with `n_modes` vibrations in each direction; the root passes through
-/// `n_columns` columns from 200 to 0.
+/// Returns loads of a rotating, growing plate with `n_modes` vibrations in each direction; the root
+/// passes through `n_columns` columns from 200 to 0.
 fem::EslSets synthetic_loads(int n_modes, int n_columns) {
   const double omega = 2 * std::numbers::pi, v = 0.5;
   fem::EslSets loads{kGrid, {}};
@@ -78,7 +78,8 @@ Times iteration(const fem::EslSets& loads, const mmc::ComplianceSettings& settin
   std::size_t turn = 0;
   Times t{};
   t.total = milliseconds([&] {
-    turn = 1 - turn;  // another design each time: the same one would not be factored again
+    // another design each time, because an unchanged one would not be factored again
+    turn = 1 - turn;
     compliance.evaluate(k[turn], m[turn], value);
   });
   const auto s = compliance.seconds();

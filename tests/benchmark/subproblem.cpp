@@ -1,6 +1,6 @@
-// CPU time of one MMA subproblem: worst cases over m - 1 loads with a volume constraint, for the
-// numbers of variables of the shipped cases; and of the KKT residual of the same rows, which every
-// iteration asks for, too. One thread. Prints tables and asserts nothing.
+// Prints the CPU time of one MMA subproblem: worst cases over m - 1 loads with a volume constraint,
+// for the numbers of variables of the shipped cases; and of the KKT residual of the same rows,
+// which every iteration computes, too. One thread. It checks nothing.
 
 #include <cmath>
 #include <cstdio>
@@ -16,18 +16,19 @@ namespace {
 using namespace flexmorph;
 using namespace flexmorph::benchmark;
 
-constexpr double kDemanded = 5;                  // ms
+constexpr double kDemanded = 5;                  // [ms]
 constexpr double kDistance = 0.1, kMove = 0.05;  // of the asymptotes, of the bounds
 
-/// log C_l - bound <= 0 for loads that change smoothly, V - 1 <= 0; the bound is the last variable.
-/// @param spread  of log C_l: with a small one more loads are near the worst
-optim::Response worst_case(int n, int m, double spread) {
+/// Returns log C_l - bound <= 0 for smoothly varying loads, V - 1 <= 0; the bound is the last
+/// variable.
+/// @param spread  range of log C_l: with a small one more loads are near the worst
+optim::ProblemValues worst_case(int n, int m, double spread) {
   std::mt19937 generator(static_cast<unsigned>(n + m));
   std::normal_distribution<double> normal;
   constexpr int kShapes = 8;
   MatrixXd shapes(n, kShapes);
   for (double& s : shapes.reshaped()) s = 0.02 * normal(generator);
-  optim::Response r;
+  optim::ProblemValues r;
   r.f = 0;
   r.df = VectorXd::Zero(n);
   r.g = VectorXd::Zero(m);
@@ -52,8 +53,8 @@ optim::Response worst_case(int n, int m, double spread) {
   return r;
 }
 
-/// As mma builds it, with its default settings.
-optim::MmaSubproblem subproblem(const optim::Response& r) {
+/// Returns the subproblem that mma builds with its default settings.
+optim::MmaSubproblem subproblem(const optim::ProblemValues& r) {
   constexpr double kConvexity = 0.01, kScale = 10, kPrice = 1000;
   const Eigen::Index n = r.df.size(), m = r.g.size();
   optim::MmaSubproblem p;
@@ -81,7 +82,7 @@ optim::MmaSubproblem subproblem(const optim::Response& r) {
 }
 
 void print_row(int n, int m, double spread) {
-  const optim::Response r = worst_case(n, m, spread);
+  const optim::ProblemValues r = worst_case(n, m, spread);
   const optim::MmaSubproblem p = subproblem(r);
   optim::MmaSolver solver(n, m);
   const double ms = milliseconds([&] { solver.solve(p); });

@@ -1,4 +1,4 @@
-// `flexmorph accuracy` from the command line, on small cases with closed forms.
+// Shows that `flexmorph accuracy` on the command line reproduces closed forms of small cases.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 using test::Ended;
 using test::Words;
 
-/// `flexmorph accuracy` with changes.
+/// Runs `flexmorph accuracy` on a case with further arguments.
 Ended accuracy(const Scratch& scratch, const std::string& name, const std::string& folder,
                const Words& more) {
   Words words = {"accuracy", name, "-o", folder};
@@ -24,8 +24,8 @@ Ended accuracy(const Scratch& scratch, const std::string& name, const std::strin
   return test::flexmorph(scratch, words);
 }
 
-// A weight at the end of a strip at rest: Euler's cantilever, u = F L³/(3 E I), with Poisson's
-// ratio 0 and a deflection of 1e-5 of the length, so that nothing nonlinear matters.
+// A static strip with a weight at its end: Euler's cantilever, u = F L³/(3 E I), with Poisson's
+// ratio 0. The deflection is 1e-5 of the length, therefore nonlinear effects are negligible.
 const char* const kStrip = R"toml(
 [static]
 steps = 4
@@ -57,7 +57,7 @@ at = "free_end"
 quantity = "strip.tip_uz"
 # 2.5e-4 N at 1 m; E I = 1e9 x 0.1 x 1e-6 / 12 N m^2
 reference = { value = 1e-5, source = "F L^3/(3 E I), 2.5e-4 N, E I = 1e9 x 0.1 x 1e-6 / 12" }
-ladders = ["elements", "quadrature", "load_steps"]
+refinements = ["elements", "quadrature", "load_steps"]
 )toml";
 
 TEST(Accuracy, ReproducesTheCantileverAndWritesCasesThatRun) {
@@ -67,11 +67,11 @@ TEST(Accuracy, ReproducesTheCantileverAndWritesCasesThatRun) {
   ASSERT_EQ(ended.code, 0) << ended.err;
   const io::CsvTable table = io::read_csv(folder + "/accuracy.csv");
   const auto limits = table.numbers("limit"), values = table.numbers("value");
-  const Words ladders = table.texts("ladder");
+  const Words refinements = table.texts("refinement series");
   for (const char* name : {"elements", "quadrature", "load_steps"})
-    EXPECT_GE(std::count(ladders.begin(), ladders.end(), name), 5) << name;
-  // Cubic elements bend exactly under an end load. The plate's curvature and the beam's differ by
-  // terms of the square of the slope, 1e-10.
+    EXPECT_GE(std::count(refinements.begin(), refinements.end(), name), 5) << name;
+  // Cubic elements bend exactly under an end load. The curvatures of plate and beam differ by terms
+  // of the square of the slope, 1e-10, which is far below the tolerance.
   for (size_t i = 0; i < limits.size(); ++i) EXPECT_NEAR(limits[i], 1e-5, 1e-5 * 1e-6);
   for (const char* name : {"/accuracy.md", "/accuracy.svg", "/strip_1pct.toml"})
     EXPECT_TRUE(std::filesystem::exists(folder + name)) << name << ended.out;
@@ -80,7 +80,7 @@ TEST(Accuracy, ReproducesTheCantileverAndWritesCasesThatRun) {
       scratch, {"run", folder + "/strip_0.01pct.toml", "-o", scratch / "again", "--quiet"});
   EXPECT_EQ(run.code, 0) << run.err;
 
-  // Nothing is run a second time, and the numbers are the same.
+  // A second call runs no level again and reports identical numbers.
   const Ended again = accuracy(scratch, file, folder, {"--budget", "5s"});
   EXPECT_EQ(again.code, 0);
   const io::CsvTable second = io::read_csv(folder + "/accuracy.csv");
@@ -103,24 +103,26 @@ TEST(Accuracy, RefusesWhatItCannotMeasure) {
     EXPECT_EQ(test::lines_of(ended.err).size(), 1U) << ended.err;
     EXPECT_FALSE(std::filesystem::exists(folder));
   };
-  fails({"--set", "accuracy="}, "strip.tip_uz");  // what there is
+  fails({"--set", "accuracy="}, "strip.tip_uz");  // The message lists the quantities that exist.
   fails({"--set", "accuracy.quantity=compliance"}, "strip.tip_uz");
   fails({"--set", "accuracy.at=2"}, "after the end");
-  fails({"--set", "accuracy.ladders=[\"mesh\"]"}, "a ladder");
+  fails({"--set", "accuracy.refinements=[\"mesh\"]"},
+        "accuracy.refinements: refinement series 'mesh'");
   fails({"--set", "accuracy.reference={ value = 1, file = \"x.csv\", source = \"\" }"}, "either");
-  fails({"--ladders", "mesh"}, "elements");
-  fails({"--ladders", "step"}, "nothing moves");
+  fails({"--refinements", "mesh"}, "elements");
+  fails({"--refinements", "step"}, "no motion");
   fails({"--budget", "soon"}, "--budget soon");
   fails({"--set", "accuracy.reference={ file = \"nowhere.csv\", source = \"\" }"}, "nowhere.csv");
 }
 
-// The start design of the short beam: volume of the blurred layout, which no load touches.
+// Evaluates the start design of the short beam; the quantity is the volume of the smoothed layout,
+// which does not depend on the loads.
 TEST(Accuracy, AnalysesADesignAsItStarts) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
   const Ended ended =
       accuracy(scratch, "short_beam", folder,
-               {"--set", "accuracy.quantity=volume", "--ladders", "band", "--budget", "600s",
+               {"--set", "accuracy.quantity=volume", "--refinements", "band", "--budget", "600s",
                 "--no-verify", "--set", "design.cell=0.1", "--set", "design.min_thickness=0.1",
                 "--set", "design.min_feature=0"});
   ASSERT_EQ(ended.code, 0) << ended.err;
@@ -133,7 +135,7 @@ TEST(Accuracy, AnalysesADesignAsItStarts) {
       EXPECT_TRUE(value > 0.2 && value < 0.6) << value;
     }
   EXPECT_GE(finite, 3);
-  // A run of no iterations leaves the layout alone.
+  // A run of zero iterations succeeds and records no iteration.
   const Ended run =
       test::flexmorph(scratch, {"run", "short_beam", "-o", scratch / "start", "--set",
                                 "optimizer.max_iterations=0", "--set", "design.cell=0.1", "--set",
@@ -142,16 +144,16 @@ TEST(Accuracy, AnalysesADesignAsItStarts) {
   EXPECT_EQ(io::read_csv(scratch / "start/history.csv").n_rows(), 0U);
 }
 
-// The case has a final run on a finer mesh than its own: what is recommended may be finer still.
-// The budget lets every level run on any machine: what it cuts would depend on the processor's
-// speed.
+// The case verifies its design on a finer mesh than its own (11 x 3 elements); the recommended mesh
+// may be still finer. The budget is large enough for every level on any machine, because the levels
+// that a smaller budget leaves out would depend on the speed of the processor.
 TEST(Accuracy, RecommendsMeshesThatTheWholeCaseTakes) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const Ended ended = accuracy(
-      scratch, "rotating_plate_v05", folder,
-      {"--ladders", "elements", "--budget", "600s", "--quiet", "--set", "accuracy.at=0.05", "--set",
-       "accuracy.scale=2.5e-3", "--set", "verify={mesh=[11, 3]}", "--set", "time.step=5e-3"});
+  const Ended ended = accuracy(scratch, "rotating_plate_v05", folder,
+                               {"--refinements", "elements", "--budget", "600s", "--quiet", "--set",
+                                "accuracy.at=0.05", "--set", "accuracy.scale=2.5e-3", "--set",
+                                "verify={mesh=[11, 3]}", "--set", "time.step=5e-3"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const std::string file = folder + "/rotating_plate_v05_1pct.toml";
   ASSERT_TRUE(std::filesystem::exists(file)) << ended.out;

@@ -1,5 +1,6 @@
-// Accuracy: levels under a budget with a clock of its own, cheapest combinations against
-// enumeration by hand, values of columns.
+// Shows that refinement series keep a time budget (with simulated run times), that the cheapest
+// combinations of levels agree with an enumeration by hand, and that values of columns are
+// interpolated exactly.
 
 #include "cases/accuracy/accuracy.h"
 
@@ -32,7 +33,7 @@ TEST(Budget, ReadsTimes) {
     EXPECT_THROW(read_budget(bad), Error) << bad;
 }
 
-/// Series of runs that take known times.
+/// Refinement series whose runs take prescribed times.
 struct Runs {
   double spent = 0;
   std::vector<Parameter> parameters;
@@ -47,7 +48,8 @@ struct Runs {
     s.first_guess = 1;
     for (const double each : h) s.levels.emplace_back().level.h = each;
   }
-  /// @param seconds  of series and h
+  /// Runs levels until the budget is spent. @param seconds  run time [s] as a function of the index
+  /// of the series and of h
   template <class Time>
   void go(double budget, const Time& seconds) {
     while (const auto next = next_level(series, std::max(0.0, budget - spent))) {
@@ -65,15 +67,17 @@ TEST(Budget, CoarseLevelsFirstAndTheLadderIsCut) {
   Runs runs;
   runs.add({4, 2, 1, 0.5, 0.25, 0.125}, 1);
   runs.add({2, 1, 0.5, 0.25}, 3);
-  // Ladder 0 takes 1/h: 0.25, 0.5, 1, 2, 4, 8; ladder 1 takes h^-3: 0.125, 1, 8, 64.
+  // A level of series 0 takes 1/h: 0.25, 0.5, 1, 2, 4, 8 s. A level of series 1 takes h^-3: 0.125,
+  // 1, 8, 64 s.
   const auto seconds = [](size_t t, double h) { return std::pow(h, t == 0 ? -1 : -3); };
   runs.go(10, seconds);
-  // In all 0.125 + 0.25 + 0.5 + 1 + 1 + 2 + 4 = 8.875; 8 more of either ladder do not fit.
+  // The levels that were run take 0.125 + 0.25 + 0.5 + 1 + 1 + 2 + 4 = 8.875 s. The next level of
+  // either series takes 8 s, which exceeds the budget of 10 s.
   EXPECT_EQ(runs.spent, 8.875);
   EXPECT_EQ(runs.ran.front(), (std::pair<size_t, size_t>{1, 0}));
   EXPECT_TRUE(runs.is_cut(1, 2) && runs.is_cut(1, 3) && runs.is_cut(0, 5));
   EXPECT_EQ(runs.series[0].count("cut") + runs.series[1].count("cut"), 3U);
-  for (size_t t = 0; t < 2; ++t)  // coarse to fine
+  for (size_t t = 0; t < 2; ++t)  // The levels of each series are run from coarse to fine.
     for (size_t i = 1; i < runs.ran.size(); ++i)
       for (size_t j = 0; j < i; ++j)
         if (runs.ran[i].first == t && runs.ran[j].first == t) {
@@ -86,7 +90,8 @@ TEST(Budget, IsKeptWhenTimesGrowFasterThanThought) {
   runs.add({8, 4, 2, 1, 0.5, 0.25}, 1);
   const auto seconds = [](size_t, double h) { return std::pow(h, -1.9); };
   runs.go(18, seconds);
-  // 0.02 + 0.07 + 0.27 + 1 + 3.7; the next would take 14, which the measured growth foresees.
+  // Five levels take 0.02 + 0.07 + 0.27 + 1 + 3.7 s. The sixth would take 14 s, which is predicted
+  // from the measured growth of the run times.
   EXPECT_EQ(runs.ran.size(), 5U);
   EXPECT_LT(runs.spent, 18);
   EXPECT_NEAR(runs.series[0].seconds(5), std::pow(0.25, -1.9), 1e-9);
@@ -114,7 +119,7 @@ TEST(Cheapest, SplitsTheTargetOverTheParameters) {
       {"a", {candidate(8e-3, 0.1), candidate(4e-3, 0.3), candidate(1e-3, 1), candidate(1e-4, 9)}},
       {"b", {candidate(5e-3, 0.5), candidate(1e-3, 1), candidate(2e-4, 2)}}};
   const std::vector<double> base = {10}, sure = {0};
-  // 1 %: 8e-3 + 1e-3 at 0.1 x 1 beats 4e-3 + 5e-3 at 0.3 x 0.5.
+  // Target error 1 %: the errors 8e-3 + 1e-3 at a cost of 0.1 x 1 beat 4e-3 + 5e-3 at 0.3 x 0.5.
   const auto loose = cheapest(groups, base, sure, 1e-2);
   ASSERT_TRUE(loose);
   EXPECT_EQ(loose->picked, (std::vector<size_t>{0, 1}));
@@ -122,7 +127,7 @@ TEST(Cheapest, SplitsTheTargetOverTheParameters) {
   EXPECT_NEAR(loose->errors[0], 9e-3, 1e-15);
   EXPECT_EQ(cheapest(groups, base, sure, 1.25e-3)->picked, (std::vector<size_t>{2, 2}));
   EXPECT_FALSE(cheapest(groups, base, sure, 1e-4));
-  // What the limits are uncertain by is part of it.
+  // The uncertainty of the limits is counted as part of the error.
   const std::vector<double> unsure = {9.5e-4};
   EXPECT_EQ(cheapest(groups, base, unsure, 1.26e-3)->picked, (std::vector<size_t>{3, 2}));
   const std::vector<double> unknown = {INFINITY};
@@ -139,7 +144,7 @@ TEST(Cheapest, PassesOverWhatIsNotKnownAndKeepsAllQuantities) {
   const auto best = cheapest(groups, base, sure, 1e-2);
   ASSERT_TRUE(best);
   EXPECT_EQ(best->picked, (std::vector<size_t>{2}));
-  EXPECT_EQ(best->cost, 3);  // 0.5 x 4 of the one part, all of the other
+  EXPECT_EQ(best->cost, 3);  // The first part costs 0.5 x 4; the second keeps its cost of 1.
 }
 
 TEST(ValueAt, InterpolatesColumns) {
@@ -150,18 +155,19 @@ TEST(ValueAt, InterpolatesColumns) {
   EXPECT_EQ(value_at(x, y, interest), y.back());
   interest.at = Interest::At::time;
   for (const double t : {0.0, 0.05, 0.433, 0.97, 1.0}) {
-    interest.time = t;  // cubics are exact
+    interest.time = t;  // Cubic interpolation is exact for this cubic polynomial.
     EXPECT_NEAR(value_at(x, y, interest), 1 + t - 2 * t * t + t * t * t, 1e-14);
   }
   interest.time = 1.2;
   EXPECT_TRUE(std::isnan(value_at(x, y, interest)));
-  // The largest size between rows: -3 + 5 (t - 0.52)².
+  // The largest magnitude, 3 at t = 0.52, lies between two rows: y = -3 + 5 (t - 0.52)².
   for (size_t i = 0; i < x.size(); ++i) y[i] = -3 + 5 * std::pow(x[i] - 0.52, 2);
   interest.at = Interest::At::max;
   EXPECT_NEAR(value_at(x, y, interest), 3, 1e-14);
 }
 
-// A study whose errors are known: Q = 1 + 0.02 h² + 0.1 g⁴, steps h and meshes g.
+// Returns a study whose errors are known: Q = 1 + 0.02 h² + 0.1 g⁴ for the time step h and the mesh
+// size g.
 AccuracyStudy known_study() {
   AccuracyStudy study;
   study.interests.emplace_back().name = "q";
@@ -194,12 +200,14 @@ AccuracyStudy known_study() {
 TEST(Study, AddsWhatIsMissingToTheLimits) {
   const AccuracyStudy study = known_study();
   const Estimate& estimate = study.estimates[0];
-  EXPECT_NEAR(estimate.value, 1, 1e-9);  // 1.12 less both terms
+  // The case itself has 1.12; the limit is this value minus both error terms.
+  EXPECT_NEAR(estimate.value, 1, 1e-9);
   EXPECT_LT(estimate.uncertainty, 1e-9);
   for (const RefinementSeries& series : study.series)
     for (const LevelRun& run : series.levels) {
       const bool mesh = series.parameter->name == "elements";
-      // Against the own limit of the series: the error of the other parameter is not in it.
+      // Errors refer to the limit of their own series, therefore the error of the other parameter
+      // is not included.
       const double error = mesh ? 0.1 * std::pow(run.level.h, 4) : 0.02 * std::pow(run.level.h, 2);
       EXPECT_NEAR(run.errors[0], error / 1.12, 1e-9);
     }
@@ -209,13 +217,15 @@ TEST(Study, RecommendsWhatReachesTheTargetAndWithdrawsWhatDoesNot) {
   const AccuracyStudy study = known_study();
   const std::vector<Recommendation> all = {recommend(study, 1e-2), recommend(study, 1e-5)};
   ASSERT_FALSE(all[0].names.empty());
-  // By hand: mesh 1/2 (0.56 %, 8 s) with step 1/2 (0.45 %, x 2) is over 1 %, so mesh 1/2 and step
-  // 1/4 (0.11 %, x 4), or mesh 1/4 (0.03 %, 64 s) and step 1/2: the first is cheaper.
+  // By hand: mesh 1/2 (0.56 %, 8 s) with step 1/2 (0.45 %, factor 2) exceeds 1 % in sum. Mesh 1/2
+  // with step 1/4 (0.11 %, factor 4) and mesh 1/4 (0.03 %, 64 s) with step 1/2 are below 1 %; the
+  // first one is cheaper.
   EXPECT_EQ(all[0].overrides, (Words{"g=0.500000", "h=0.250000"}));
   EXPECT_NEAR(all[0].seconds, 32, 1e-9);
   EXPECT_TRUE(all[1].names.empty());
   EXPECT_FALSE(all[1].sentence.empty());
-  // With 0.3 % only mesh 1/4 (0.03 %) and step 1/4 (0.11 %) are left of the cheap ones.
+  // With the share 0.3 the sum of errors must be below 0.3 %: mesh 1/4 (0.03 %) with step 1/4 (0.11
+  // %) is the cheapest.
   const Recommendation careful = recommend(study, 1e-2, 0.3);
   ASSERT_FALSE(careful.names.empty());
   EXPECT_EQ(careful.overrides, (Words{"g=0.250000", "h=0.250000"}));
@@ -232,11 +242,13 @@ TEST(Study, RecommendsWhatReachesTheTargetAndWithdrawsWhatDoesNot) {
 
 TEST(Study, ASeriesThatIsNotConvergedOffersItsFinestLevel) {
   AccuracyStudy study = known_study();
-  for (LevelRun& run : study.series[1].levels)  // the order of the step is 1.3, not 2
+  // The order of the step is 1.3 instead of the expected 2.
+  for (LevelRun& run : study.series[1].levels)
     run.values[0] = 1.1 + 0.02 * std::pow(run.level.h, 1.3);
   evaluate(study);
   EXPECT_FALSE(study.series[1].limits[0].converged);
-  // Coarser levels count where the limit is known ten times better than is targetd.
+  // Coarser levels are candidates only if the uncertainty of the limit is at most a tenth of the
+  // target error.
   const double unsure = study.series[1].limits[0].uncertainty / study.estimates[0].scale;
   for (const double target : {9 * unsure, 11 * unsure})
     for (const Group& group : groups_of(study, target)) {
@@ -246,7 +258,7 @@ TEST(Study, ASeriesThatIsNotConvergedOffersItsFinestLevel) {
     }
 }
 
-// No target is about a quantity without a limit.
+// Nothing is recommended for a quantity that has no limit under refinement.
 TEST(Study, ATargetLeavesOutWhatHasNoLimit) {
   AccuracyStudy study = known_study();
   for (RefinementSeries& series : study.series) series.theories = {Theory{0, "a point load"}};
@@ -288,33 +300,34 @@ TEST(Parameters, LevelsOfOneParameterLeaveTheOthersAlone) {
     const Scene finer = read_scene(io::CaseFile(find_case("short_beam"), level.overrides));
     const BodyDesign &a = scene.designs[0], &b = finer.designs[0];
     EXPECT_NEAR(b.grid.dx(), level.h * a.grid.dx(), 1e-12);
-    EXPECT_NEAR(b.tdf.band, level.h * a.tdf.band, 1e-12);  // as many cells
+    EXPECT_NEAR(b.tdf.band, level.h * a.tdf.band, 1e-12);  // The band has as many cells as before.
     EXPECT_NEAR(b.tdf.sharpness, a.tdf.sharpness / level.h, 1e-9);
     EXPECT_EQ(b.min_thickness, a.min_thickness);
   }
 }
 
-// Every shipped case says what is measured of it, on three ladders at least; where all bodies are
-// rigid there is no mesh, and two are left.
+// Every shipped case declares its measured quantities with at least three refinement series. A case
+// of rigid bodies only has no mesh and needs two.
 TEST(Parameters, OfShippedCases) {
   for (const std::string& name_of_case : shipped_cases()) {
     const PreparedCase prepared(read_scene(io::CaseFile(find_case(name_of_case))));
     const Scene& scene = prepared.scene();
     ASSERT_TRUE(scene.accuracy) << name_of_case;
-    size_t ladders = 0;
-    for (const std::string& name : scene.accuracy->ladders) {
+    size_t refinements = 0;
+    for (const std::string& name : scene.accuracy->refinements) {
       bool present = false;
       for (const Interest& interest : scene.accuracy->quantities)
         present = present || parameter(name).absent(scene, part_of(prepared, interest)).empty();
       EXPECT_TRUE(present) << name_of_case << ": " << name;
-      ladders += present;
+      refinements += present;
     }
     const bool has_mesh = scene.domain || !scene.bodies.empty();
-    EXPECT_GE(ladders, has_mesh ? 3U : 2U) << name_of_case;
+    EXPECT_GE(refinements, has_mesh ? 3U : 2U) << name_of_case;
   }
 }
 
-// The other beam model on the same meshes; elements of beams are one number.
+// The series `model` replaces the beam model by the terms "ecm" and "inertia"; the elements of a
+// beam are given by one number.
 TEST(Parameters, ModelsOfBeams) {
   const std::string name = "slider_crank_heated";
   const io::CaseFile file(find_case(name));
@@ -329,7 +342,8 @@ TEST(Parameters, ModelsOfBeams) {
   }
 }
 
-// A step of the case itself is not among the tolerances, and each is a case that can be read.
+// Every level of `adaptive` is a readable case whose tolerance is smaller than that of the level
+// before; every level of `minimal_coordinates` is a readable case that selects this integrator.
 TEST(Parameters, StepsThatAdapt) {
   const std::string name = "slider_crank_heated";
   const io::CaseFile file(find_case(name));

@@ -1,5 +1,6 @@
-// Designs for the motion itself: the gradient of the design problem, the certificate's bound, runs
-// that correct designs, and the commands that compare and certify them.
+// Shows that design problems for the motion itself have correct gradients, that the optimality
+// certificate bounds the possible decrease, and that runs with corrections and the commands
+// `compare` and `certify` work.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@
 #include "cases/assembly/scene_motion.h"
 #include "io/case_files/case_file.h"
 #include "io/tables.h"
-#include "optim/mmc/cycles/motion_certificate.h"
+#include "optim/mmc/cycles/optimality_certificate.h"
 #include "tests/cases/program.h"
 #include "tests/cases/run_json.h"
 #include "tests/support/differences.h"
@@ -19,7 +20,8 @@ namespace {
 
 using cases::SceneMotion;
 
-/// The growing, turning plate in short on coarse cells, half of its time unless `changes` say more.
+/// Returns the short case of the growing, rotating plate on coarse cells. The motion ends at 0.06
+/// s, half of its time, unless `changes` set another end.
 cases::Scene short_scene(std::vector<std::string> changes) {
   changes.insert(changes.begin(), "time.end=0.06");
   changes.insert(changes.end(),
@@ -27,7 +29,8 @@ cases::Scene short_scene(std::vector<std::string> changes) {
   return cases::read_scene(io::CaseFile(FLEXMORPH_SHORT_CASE, changes));
 }
 
-/// Statics that nobody asks for: a motion is all that the design is for.
+/// Returns a small static model that the design problem requires but never evaluates, because the
+/// design is for a motion only.
 mmc::ComplianceEvaluator any_loads() {
   const Grid cell;
   const fem::HeldUnknown held[] = {{0, 0}, {0, 1}, {1, 0}};
@@ -35,7 +38,7 @@ mmc::ComplianceEvaluator any_loads() {
   return {{cell, {1, 1, 0.3, 1}, {}}, held, loads, false};
 }
 
-/// The design problem of a scene for its motion, at the layouts it starts with.
+/// The design problem of a scene for its motion, at the start layouts of the scene.
 class DesignedForMotion {
  public:
   explicit DesignedForMotion(cases::Scene scene)
@@ -48,12 +51,12 @@ class DesignedForMotion {
         whole_(parts_, mmc::designs_of(parts_), formulations_, state_) {}
 
   optim::Problem& problem() { return whole_.problem(); }
-  const mmc::Whole& whole() const { return whole_; }
+  const mmc::CombinedProblem& whole() const { return whole_; }
 
  private:
-  static std::vector<mmc::Part> parts_of(std::vector<mmc::BodyProblem>& problems,
-                                         mmc::ComplianceEvaluator& loads) {
-    std::vector<mmc::Part> out;
+  static std::vector<mmc::Subproblem> parts_of(std::vector<mmc::BodyProblem>& problems,
+                                               mmc::ComplianceEvaluator& loads) {
+    std::vector<mmc::Subproblem> out;
     for (mmc::BodyProblem& problem : problems) out.emplace_back(mmc::LoadedBody{problem, loads});
     return out;
   }
@@ -67,25 +70,25 @@ class DesignedForMotion {
   mmc::ComplianceEvaluator loads_ = any_loads();
   cases::PreparedCase prepared_;
   std::vector<mmc::BodyProblem> problems_;
-  std::vector<mmc::Part> parts_;
+  std::vector<mmc::Subproblem> parts_;
   std::vector<mmc::Formulation> formulations_;
   SceneMotion motion_;
   mmc::MotionState state_;
-  mmc::Whole whole_;
+  mmc::CombinedProblem whole_;
 };
 
-/// A slope of the objective and of these constraints, in one direction, against differences of
-/// fourth order.
-void expect_slopes(optim::Problem& problem, const std::vector<int>& constraints) {
+/// Compares the derivative of the objective and of the given constraints in one direction with
+/// difference quotients of fourth order.
+void expect_gradient(optim::Problem& problem, const std::vector<int>& constraints) {
   const VectorXd x = problem.start();
-  const optim::Response r = problem.evaluate(x);
+  const optim::ProblemValues r = problem.evaluate(x);
   EXPECT_GT(r.df.norm(), 0);
   VectorXd direction(x.size());
   for (Eigen::Index k = 0; k < x.size(); ++k) direction[k] = std::sin(3.7 * static_cast<double>(k));
   direction *= 1 / direction.norm();
   const auto n = static_cast<Eigen::Index>(constraints.size());
   const auto values = [&](double by) {
-    const optim::Response at = problem.evaluate(x + by * direction);
+    const optim::ProblemValues at = problem.evaluate(x + by * direction);
     VectorXd out(1 + n);
     out[0] = at.f;
     for (Eigen::Index i = 0; i < n; ++i) out[1 + i] = at.g[constraints[static_cast<size_t>(i)]];
@@ -100,15 +103,15 @@ void expect_slopes(optim::Problem& problem, const std::vector<int>& constraints)
 
 class EveryRow : public ::testing::TestWithParam<const char*> {};
 
-// Through components, TDF, Heaviside, ersatz material, void of motions, and the motion itself: by
-// the variables that an optimizer sees. That of the strain energy goes through a change of the mesh
-// at 0.1 s, too.
+// The derivatives pass through components, TDF, Heaviside function, ersatz material, void of
+// motions and the motion itself, with respect to the variables of the optimizer. The motion for the
+// strain energy is longer and includes a change of the mesh at 0.1 s.
 TEST_P(EveryRow, HasTheGradientThatDifferencesSay) {
   const std::string minimized = GetParam();
   DesignedForMotion design(
       short_scene({"design.minimize=" + minimized, "cycle.correct=direct",
                    minimized == "strain_energy" ? "time.end=0.12" : "time.end=0.06"}));
-  expect_slopes(design.problem(), {});
+  expect_gradient(design.problem(), {});
 }
 
 INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryRow,
@@ -116,7 +119,8 @@ INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryRow,
                                            "joint_force"),
                          [](const auto& test) { return std::string(test.param); });
 
-// J of a sum is the sum of the numbers by themselves, its gradient that of theirs.
+// The objective of a weighted sum is the weighted sum of the separately computed objectives; its
+// gradient is the weighted sum of their gradients.
 TEST(MotionSum, IsWeighted) {
   struct Number {
     double f;
@@ -126,7 +130,7 @@ TEST(MotionSum, IsWeighted) {
     Words changes = {"design.minimize=" + minimized, "cycle.correct=direct"};
     if (!added.empty()) changes.push_back("design.objective=" + added);
     DesignedForMotion design(short_scene(changes));
-    const optim::Response r = design.problem().evaluate(design.problem().start());
+    const optim::ProblemValues r = design.problem().evaluate(design.problem().start());
     return Number{std::exp(r.f), std::exp(r.f) * r.df};
   };
   const Number energy = number("strain_energy", ""), deflection = number("deflection", ""),
@@ -137,11 +141,11 @@ TEST(MotionSum, IsWeighted) {
   const double f = energy.f + 3 * deflection.f + 1e-3 * force.f;
   EXPECT_NEAR(sum.f, f, 1e-12 * f);
   const VectorXd df = energy.df + 3 * deflection.df + 1e-3 * force.df;
-  EXPECT_LT((sum.df - df).norm(), 1e-9 * df.norm());  // adjoint systems are solved to 2e-13
+  EXPECT_LT((sum.df - df).norm(), 1e-9 * df.norm());  // The adjoint systems are solved to 2e-13.
 }
 
-// A limit of one body depends on what all bodies are, here of two plates
-// whose ends a spring holds together.
+// A constraint of one body depends on the designs of all bodies; here a spring couples the ends of
+// two plates.
 TEST(MotionLimits, OfOneBodyHaveGradientsByAll) {
   const std::string limit =
       "constraint=[{response=\"volume\", at_most=0.5}, "
@@ -161,17 +165,18 @@ TEST(MotionLimits, OfOneBodyHaveGradientsByAll) {
   const cases::Scene scene = cases::read_scene(io::CaseFile(FLEXMORPH_TWO_PLATES, changes));
   DesignedForMotion design(scene);
   const int heavy = design.whole().row_of(0, 1), light = design.whole().row_of(1, 1);
-  expect_slopes(design.problem(), {heavy, light});
-  const optim::Response r = design.problem().evaluate(design.problem().start());
+  expect_gradient(design.problem(), {heavy, light});
+  const optim::ProblemValues r = design.problem().evaluate(design.problem().start());
   for (const int row : {heavy, light})
     for (const size_t body : {0, 1})
       EXPECT_GT(design.whole().part_of(r.dg.row(row), body).norm(), 1e-3 * r.dg.row(row).norm());
 }
 
-// Two variables, one limit x + y <= 0 that is met: within 0.1, log J falls most along (1, -1), by
-// 0.1 (2 - 1); the multiplier that says so is 1.5, and any other one allows more.
-TEST(MotionCertificate, BoundsWhatIsLeft) {
-  optim::Response r;
+// Two variables and one active constraint x + y <= 0: within a radius of 0.1, log J decreases most
+// along (1, -1), by 0.1 (2 - 1). The multiplier 1.5 gives exactly this bound; any other multiplier
+// gives a larger one.
+TEST(OptimalityCertificate, BoundsWhatIsLeft) {
+  optim::ProblemValues r;
   r.df = Vec2(-2, -1);
   r.g = VectorXd::Zero(1);
   r.dg = MatrixXd::Ones(1, 2);
@@ -181,11 +186,11 @@ TEST(MotionCertificate, BoundsWhatIsLeft) {
   };
   EXPECT_NEAR(left(1.5), 0.1, 1e-14);
   for (const double lambda : {0.0, 1.0, 1.2, 1.9, 3.0}) EXPECT_GE(left(lambda), 0.1 - 1e-14);
-  // At its bound a variable goes no further.
+  // A variable at its upper bound cannot move further.
   EXPECT_NEAR(mmc::left_within(r, x, lower, Vec2(0, 1), VectorXd::Constant(1, 1.0), 0.1), 0, 1e-14);
 }
 
-/// The short plate designed for its loads, then for its motion.
+/// Designs the short plate for its loads and then corrects it for its motion. @returns run.json
 json run_corrected(const Scratch& scratch, const std::string& folder, const std::string& way,
                    Words more = {}) {
   Words changes = {"cycle.correct=" + way, "cycle.corrections=2",       "cycle.step=2e-3",
@@ -208,14 +213,16 @@ TEST_P(EveryCorrection, LowersWhatTheMotionSays) {
   double least = cycles[0]["objective"];
   for (const auto& cycle : cycles)
     if (cycle["accepted"].get<bool>()) least = std::min(least, cycle["objective"].get<double>());
-  // Six iterations leave a design far from its optimum: three corrections reach 0.16 and 0.22.
+  // Six iterations leave the design for loads far from the optimum of the motion: three corrections
+  // reduce the objective to 0.16 and 0.22 of its first value (first_order and direct). The bound of
+  // the test is 0.5.
   EXPECT_LT(least, 0.5 * cycles[0]["objective"].get<double>());
   EXPECT_GT(run["certificate"]["kkt"].get<double>(), 0);
   EXPECT_GT(run["certificate"]["left"].get<double>(), 0);
-  // The crisp design has numbers of its own beside it.
-  for (const char* name : {"sharp_value", "sharp_kkt", "sharp_left"})
+  // The certificate of the crisp design is reported next to that of the smoothed design.
+  for (const char* name : {"crisp_value", "crisp_kkt", "crisp_left"})
     EXPECT_GT(run["certificate"][name].get<double>(), 0) << name;
-  EXPECT_NE(run["certificate"]["sharp_kkt"], run["certificate"]["kkt"]);
+  EXPECT_NE(run["certificate"]["crisp_kkt"], run["certificate"]["kkt"]);
   const io::CsvTable table = io::read_csv(folder + "/cycles.csv");
   EXPECT_EQ(table.numbers("objective").size(), cycles.size());
   const io::CsvTable arrows = io::read_csv(folder + "/certificate.csv");
@@ -223,16 +230,17 @@ TEST_P(EveryCorrection, LowersWhatTheMotionSays) {
   EXPECT_NE(contents_of(folder + "/certificate.svg").find("<svg"), std::string::npos);
   EXPECT_NE(contents_of(folder + "/design_esl.svg").find("<svg"), std::string::npos);
   const std::string report = contents_of(folder + "/report.html");
-  EXPECT_NE(report.find("Cycles of the motion itself"), std::string::npos);
-  EXPECT_NE(report.find("Certificate of the motion"), std::string::npos);
-  EXPECT_EQ(report.find("First the design for loads") != std::string::npos,
+  EXPECT_NE(report.find("Corrected cycles"), std::string::npos);
+  EXPECT_NE(report.find("Optimality certificate"), std::string::npos);
+  EXPECT_EQ(report.find("The designs for the equivalent static loads are shown first") !=
+                std::string::npos,
             run["corrected"]["kept"].get<bool>());
 }
 
 INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryCorrection, ::testing::Values("first_order", "direct"),
                          [](const auto& test) { return std::string(test.param); });
 
-// Where the largest compliance is minimized, it is the largest energy of the motion.
+// With loads = "worst" the objective of the motion is the largest strain energy.
 TEST(MotionDesign, OfTheWorstLoadLowersTheLargestEnergy) {
   const Scratch scratch;
   const json run = run_corrected(scratch, scratch / "out", "first_order", {"design.loads=worst"});
@@ -241,10 +249,10 @@ TEST(MotionDesign, OfTheWorstLoadLowersTheLargestEnergy) {
   double least = cycles[0]["objective"];
   for (const auto& cycle : cycles)
     if (cycle["accepted"].get<bool>()) least = std::min(least, cycle["objective"].get<double>());
-  EXPECT_LT(least, 0.5 * cycles[0]["objective"].get<double>());  // 0.087
+  EXPECT_LT(least, 0.5 * cycles[0]["objective"].get<double>());  // Measured ratio: 0.087.
 }
 
-// A finished run is certified later as at its end.
+// `certify` on a finished run reproduces the certificate that the run wrote at its end.
 TEST(Certify, SaysOfAFinishedRunWhatTheRunWouldHaveSaid) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
@@ -262,7 +270,7 @@ TEST(Certify, RefusesWhatIsNoFinishedRun) {
   const Scratch scratch;
   const Ended ended = flexmorph(scratch, {"certify", scratch / "nowhere"});
   EXPECT_EQ(ended.code, 2);
-  EXPECT_NE(ended.err.find("is no finished run"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("is not the folder of a finished run"), std::string::npos) << ended.err;
 }
 
 TEST(CompareCycles, HasARowForEveryWay) {
@@ -282,13 +290,14 @@ TEST(CompareCycles, HasARowForEveryWay) {
     const json certificate = run_json(folder + "/" + table.texts("cycles")[k])["certificate"];
     const auto near = [&](const char* column, const char* key) {
       const double value = certificate[key].get<double>();
-      EXPECT_NEAR(table.numbers(column)[k], value, 5e-3 * value) << column;  // to three digits
+      // The table has three digits.
+      EXPECT_NEAR(table.numbers(column)[k], value, 5e-3 * value) << column;
     };
     near("J", "value");
-    near("sharp J", "sharp_value");
+    near("crisp J", "crisp_value");
     near("KKT residual", "kkt");
   }
-  // All begin with the design for loads, which a correction only replaces by a better one.
+  // All cycles begin with the design for loads; a correction replaces it only by a better design.
   const auto least = table.numbers("least J met");
   for (const size_t corrected : {1, 2}) EXPECT_LE(least[corrected], least[0]);
   EXPECT_NE(contents_of(folder + "/compare.svg").find("<svg"), std::string::npos);

@@ -33,7 +33,7 @@ Ended flexmorph(const Scratch& scratch, const Words& arguments) {
 
 namespace {
 
-Words run_words(const std::string& name, const std::string& folder, const Words& changes) {
+Words run_text(const std::string& name, const std::string& folder, const Words& changes) {
   Words words = {"run", name, "-o", folder};
   for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
   return words;
@@ -43,13 +43,13 @@ Words run_words(const std::string& name, const std::string& folder, const Words&
 
 Ended run(const Scratch& scratch, const std::string& name, const std::string& folder,
           const Words& changes) {
-  Words words = run_words(name, folder, changes);
+  Words words = run_text(name, folder, changes);
   if (!changes.empty()) words.insert(words.end(), {"--set", "expect="});
   return flexmorph(scratch, words);
 }
 
 Words short_run(const std::string& folder, const Words& changes) {
-  return run_words(FLEXMORPH_SHORT_CASE, folder, changes);
+  return run_text(FLEXMORPH_SHORT_CASE, folder, changes);
 }
 
 }  // namespace flexmorph::test

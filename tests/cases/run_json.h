@@ -9,7 +9,8 @@ namespace flexmorph::test {
 
 using nlohmann::json;
 
-/// Returns what run.json of a run's folder says. @throws json::parse_error where it is not JSON
+/// Returns the contents of run.json in the folder of a run. @throws json::parse_error if the file
+/// is not valid JSON.
 json run_json(const std::string& folder);
 
 }  // namespace flexmorph::test

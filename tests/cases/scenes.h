@@ -9,7 +9,7 @@
 #include "cases/assembly/build.h"
 #include "tests/support/disturbance.h"
 
-/// Shipped cases as tests read them.
+/// Functions by which tests read shipped cases.
 namespace flexmorph::cases {
 
 using Changes = std::vector<std::string>;
@@ -19,14 +19,15 @@ inline std::string shipped(const std::string& name) {
   return (std::filesystem::path(FLEXMORPH_CASES) / (name + ".toml")).string();
 }
 
-/// A shipped case with overrides, "key=value" each. @throws Error (input).
+/// Reads a shipped case with overrides "key=value". @throws Error (input).
 inline Scene read(const std::string& name, const Changes& changes = {}) {
   Scene scene = read_scene(io::CaseFile(shipped(name), changes));
   for (Body& body : scene.bodies) body.youngs_modulus = testing::disturbed(body.youngs_modulus);
   return scene;
 }
 
-/// Returns what is said about rotating_plate_v01 with these changes; empty when it is accepted.
+/// Returns the error message for rotating_plate_v01 with these changes; empty if the case is
+/// accepted.
 inline std::string complaint_of_v01(const Changes& changes) {
   try {
     read("rotating_plate_v01", changes);

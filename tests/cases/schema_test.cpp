@@ -1,5 +1,5 @@
-// The JSON schema of case files, by an independent validator (valijson): it takes every shipped
-// case and refuses broken ones.
+// Shows that the JSON schema of case files accepts every shipped case and refuses broken ones. The
+// schema is evaluated by an independent validator (valijson).
 
 #include <gtest/gtest.h>
 #include <toml++/toml.h>
@@ -28,8 +28,8 @@ class Schema : public ::testing::Test {
     valijson::SchemaParser(valijson::SchemaParser::kDraft7)
         .populateSchema(valijson::adapters::NlohmannJsonAdapter(json), schema_);
   }
-  /// What is wrong with a case; empty if nothing is.
-  std::string judge(const std::string& toml_text) const {
+  /// Returns the schema errors of a case; empty if there are none.
+  std::string verify(const std::string& toml_text) const {
     std::ostringstream text;
     text << toml::json_formatter(toml::parse(toml_text));
     const nlohmann::json json = nlohmann::json::parse(text.str());
@@ -49,34 +49,34 @@ class Schema : public ::testing::Test {
 
 TEST_F(Schema, TakesAllShippedCases) {
   for (const std::string& name : cases::shipped_cases())
-    EXPECT_EQ(judge(io::read_text(cases::find_case(name))), "") << name;
+    EXPECT_EQ(verify(io::read_text(cases::find_case(name))), "") << name;
 }
 
 TEST_F(Schema, RefusesBrokenCases) {
   const std::string whole = io::read_text(FLEXMORPH_SHORT_CASE);
-  ASSERT_EQ(judge(whole), "");
+  ASSERT_EQ(verify(whole), "");
   struct Break {
     const char *from, *to;
   };
   for (const Break& each :
        {Break{"step = 1e-3", "step = -1e-3"},          // below its range
-        Break{"step = 1e-3", "step = \"adaptativ\""},  // no such word
-        Break{"step = 1e-3", "stepp = 1e-3"},          // no such key
-        Break{"end = 0.12", ""},                       // required
-        Break{"end = 0.12", "end = \"0.12\""},         // a text
+        Break{"step = 1e-3", "step = \"adaptativ\""},  // an unknown value
+        Break{"step = 1e-3", "stepp = 1e-3"},          // an unknown key
+        Break{"end = 0.12", ""},                       // a missing key that is required
+        Break{"end = 0.12", "end = \"0.12\""},         // a text instead of a number
         Break{"element = \"ale_ancf_plate\"", "element = \"plate\""},
         Break{"poisson_ratio = 0.3", "poisson_ratio = 0.7"},
         Break{"elements = [10, 2]", "elements = [10, 2, 2]"},
         Break{"elements = [10, 2]", "elements = [10, 0.5]"},
         Break{"terms = [\"inertia\", \"membrane\"]", "terms = []"},
         Break{"terms = [\"inertia\", \"membrane\"]", "terms = [\"inertia\", \"inertia\"]"},
-        Break{"[[hub]]", "[hub]"},  // no list
+        Break{"[[hub]]", "[hub]"},  // a table instead of a list
         Break{"[time]", "[tyme]"}}) {
     std::string broken = whole;
     const size_t at = broken.find(each.from);
     ASSERT_NE(at, std::string::npos) << each.from;
     broken.replace(at, std::string(each.from).size(), each.to);
-    EXPECT_NE(judge(broken), "") << each.to;
+    EXPECT_NE(verify(broken), "") << each.to;
   }
 }
 

@@ -1,5 +1,6 @@
-// What the suites of stability have found, repaired, and what their rows tell: conditions, tables
-// of a check that is not over, starts of short motions, changes that a step does not resolve.
+// Shows that defects found by `flexmorph stability` stay repaired, and what its suites rely on:
+// condition numbers, tables of an unfinished check, starts of short motions, changes that a step
+// does not resolve.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +39,7 @@ Words lean(const Words& more) {
   return out;
 }
 
-// Nobody pays for a number that was not asked for.
+// Condition numbers are computed only if --condition is given.
 TEST(ConditionOfARun, IsThereOnDemand) {
   const Scratch scratch;
   const Words short_motion = lean({"time.end=2e-3", "body.elements=[2, 2]"});
@@ -48,7 +49,7 @@ TEST(ConditionOfARun, IsThereOnDemand) {
   EXPECT_GE(run_of(scratch)["motion"]["condition"].get<double>(), 1);
 }
 
-/// Largest of the motion, the path and the designs.
+/// Returns the largest condition number of the motion, the static path and the designs.
 double condition_of(const Scratch& scratch, const std::string& name, const Words& changes,
                     int code = 0) {
   const Ended ended = run(scratch, name, lean(changes), {"--condition"});
@@ -61,8 +62,8 @@ double condition_of(const Scratch& scratch, const std::string& name, const Words
   return worst;
 }
 
-// A void of stiffness alpha² between pieces of material costs 2 log10(1/alpha) digits; units cost
-// none.
+// A void of relative stiffness alpha² between regions of material costs 2 log10(1/alpha) digits:
+// alpha = 1e-4 instead of 1e-2 costs 4 digits. The unit of Young's modulus costs none.
 TEST(ConditionOfARun, OfDesignsGrowsAsTheVoidThins) {
   const Scratch scratch;
   const std::string start =
@@ -72,7 +73,8 @@ TEST(ConditionOfARun, OfDesignsGrowsAsTheVoidThins) {
   const auto with = [&](const std::string& change) {
     Words changes = analysed;
     changes.push_back(change);
-    return condition_of(scratch, "short_beam", changes, test::kTooFew);  // joins nothing
+    // The single component does not connect loads and support.
+    return condition_of(scratch, "short_beam", changes, test::kTooFew);
   };
   const double own = with("design.alpha=1e-2"), thin = with("design.alpha=1e-4");
   EXPECT_GT(own, 1e3);
@@ -81,8 +83,9 @@ TEST(ConditionOfARun, OfDesignsGrowsAsTheVoidThins) {
   EXPECT_NEAR(stiff, soft, 1e-3 * soft);
 }
 
-// The tangent of a cantilever at rest: κ grows with the fourth power of the number of elements
-// where bending counts, so that twice as many cost more than a digit.
+// The stiffness matrix of a static cantilever: κ grows with the fourth power of the number of
+// elements where bending dominates. Twice as many elements give a factor of about 16, here bounded
+// by 4 and 32.
 TEST(ConditionOfARun, OfPathsGrowsWithTheMesh) {
   const Scratch scratch;
   const auto with = [&](const char* elements) {
@@ -95,7 +98,7 @@ TEST(ConditionOfARun, OfPathsGrowsWithTheMesh) {
   EXPECT_LT(fine, 32 * coarse);
 }
 
-// Killed in the middle, with whole tables.
+// A check that is killed while it runs leaves complete tables.
 TEST(Tables, AreThereBeforeTheEnd) {
   const Scratch scratch;
   const std::string folder = scratch / "out", table = folder + "/stability.csv";
@@ -105,13 +108,14 @@ TEST(Tables, AreThereBeforeTheEnd) {
   ASSERT_TRUE(testing::eventually(check, [&] { return std::filesystem::exists(table); }));
   check.send(SIGKILL);
   check.end();
-  const io::CsvTable rows = io::read_csv(table);  // refuses lines that are cut
+  const io::CsvTable rows = io::read_csv(table);  // read_csv() refuses incomplete lines.
   EXPECT_GE(rows.n_rows(), 10u);
   EXPECT_EQ(rows.texts("suite")[0], "base");
 }
 
-// The rate of the start's shape was a difference over 2e-4 s: beyond the end of this motion, where
-// its drives are not defined ("material lines 0 and 1 cross").
+// A former version computed the rate of the initial shape by a difference over 2e-4 s. This reaches
+// beyond the end of the present motion, where its drives are not defined ("material lines 0 and 1
+// cross").
 TEST(Starts, OfMotionsShorterThanADifference) {
   const Scratch scratch;
   const Ended ended =
@@ -122,15 +126,17 @@ TEST(Starts, OfMotionsShorterThanADifference) {
   EXPECT_LT(run_of(scratch)["motion"]["velocity_drift"].get<double>(), 1e-6);
 }
 
-// A temperature that jumps: the first guess of a step turned the beam inside out, and Newton's
-// method stayed there. Its ends swing by α ΔT L/2 (1 - cos ω t) = 0.01 m (1 - cos ω t).
+// The temperature jumps at the start. In a former version the first guess of a step turned the beam
+// inside out, and Newton's method converged to that state. The ends of the beam must oscillate by α
+// ΔT L/2 (1 - cos ω t) = 0.01 m (1 - cos ω t).
 TEST(Starts, AtTemperaturesThatJump) {
   const Scratch scratch;
   const Ended ended =
       run(scratch, "free_beam_heated", lean({"time.end=0.04", "body.heat.profile=step"}));
   ASSERT_EQ(ended.code, 0) << ended.err;
-  // What a jump brings in is no power: the balance misses it, and the warning says why.
-  EXPECT_TRUE(contains(ended.err, "a temperature that jumps ('beam' at t = 0 s)")) << ended.err;
+  // The energy that a jump of the temperature brings in is not a power. Therefore the energy
+  // balance does not contain it, and the warning states this reason.
+  EXPECT_TRUE(contains(ended.err, "A temperature jump ('beam' at t = 0 s)")) << ended.err;
   EXPECT_GT(run_of(scratch)["motion"]["smallest_area_ratio"].get<double>(), 0.9);
   const std::vector<double> end =
       io::read_csv(scratch / "run" + "/motion.csv").numbers("beam.end_ux");
@@ -141,8 +147,8 @@ TEST(Starts, AtTemperaturesThatJump) {
   EXPECT_GT(*std::min_element(end.begin(), end.end()), -5e-4);
 }
 
-// The motion of a drive with a formula does not depend on where libraries lie in memory, which is
-// another place in every process.
+// The motion of a drive with a formula does not depend on the addresses of libraries in memory,
+// which differ from process to process: six processes must write identical tables.
 TEST(Starts, AreTheSameBitForBit) {
   const Scratch scratch;
   std::string first;
@@ -169,16 +175,19 @@ std::string warnings_of(const Scratch& scratch, const std::string& name, const W
   return text.substr(begin, text.find("\"results\"") - begin);
 }
 
-// What ends well and is not to be trusted says so; what is only round-off does not.
+// Runs that succeed but are unreliable give a warning; energy errors of round-off do not.
 TEST(Warnings, OfEnergyThatIsMissed) {
   const Scratch scratch;
   const Words lean = {"time.end=0.04", "expect=", "accuracy=", "output.vtk=false",
                       "output.plots=false"};
   Words hit = lean, rest = lean;
-  hit.emplace_back("body.heat.settle=1e-3");  // one step, two thirds of an axial period
-  EXPECT_TRUE(contains(warnings_of(scratch, "free_beam_heated", hit), "the balance of energy"));
+  // The temperature rises within one step, which is two thirds of an axial period.
+  hit.emplace_back("body.heat.duration=1e-3");
+  EXPECT_TRUE(
+      contains(warnings_of(scratch, "free_beam_heated", hit), "error of the energy balance"));
   rest.emplace_back("body.heat.rise=0");
-  EXPECT_FALSE(contains(warnings_of(scratch, "free_beam_heated", rest), "the balance of energy"));
+  EXPECT_FALSE(
+      contains(warnings_of(scratch, "free_beam_heated", rest), "error of the energy balance"));
 }
 
 TEST(Warnings, OfVolumesThatAreNotReached) {
@@ -188,24 +197,26 @@ TEST(Warnings, OfVolumesThatAreNotReached) {
   Words small = lean;
   small.emplace_back("design.max_volume=0.01");
   EXPECT_TRUE(contains(warnings_of(scratch, "short_beam", small, test::kTooFew),
-                       "above what is allowed, 0.01"));
+                       "above the allowed value 0.01"));
   small.back() = "design.max_volume=0.9";
-  EXPECT_FALSE(
-      contains(warnings_of(scratch, "short_beam", small, test::kTooFew), "above what is allowed"));
+  EXPECT_FALSE(contains(warnings_of(scratch, "short_beam", small, test::kTooFew),
+                        "above the allowed value"));
 }
 
-// A crank at rest by its drive: what the case says of its velocity cannot be.
+// The drive keeps the crank at rest, therefore the velocity given by the case contradicts it.
 TEST(Starts, AtSpeedsThatTheDriveDoesNotAllow) {
   const Scratch scratch;
   const Ended ended = test::flexmorph(
       scratch, {"check", "four_bar", "--set", "rigid_body.crank.velocity=[100, -70]"});
   EXPECT_EQ(ended.code, 2);
-  EXPECT_TRUE(contains(
-      ended.err, "rigid_body.crank.velocity = [100, -70]: contradicts joint 'crank_on_ground'"))
+  EXPECT_TRUE(
+      contains(ended.err,
+               "rigid_body.crank.velocity = [100, -70]: this contradicts joint 'crank_on_ground'"))
       << ended.err;
 }
 
-// Components would be moved into the domain, silently: another design than that of the file.
+// Such components would silently be moved into the domain and give another design than that of the
+// file.
 TEST(Starts, OutsideOfTheDomainAreRefused) {
   const Scratch scratch;
   const std::string header = "X0,Y0,half_length,angle,c1,c2,c3\n";

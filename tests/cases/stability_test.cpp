@@ -1,5 +1,6 @@
-// Stability: verdicts on folders that are made up, the table of suites, limits around processes,
-// and the command on a small scene.
+// Shows that `flexmorph stability` assesses artificial run folders correctly, that its suites fit
+// the shipped cases, that its processes keep their limits, and that the command works on a small
+// scene.
 
 #include "cases/stability/stability.h"
 
@@ -22,7 +23,7 @@ namespace {
 using test::Ended;
 using test::Words;
 
-/// The folder of a motion whose numbers are all in order.
+/// A run folder of a motion whose numbers are all acceptable.
 class Verdicts : public ::testing::Test {
  protected:
   Verdicts() {
@@ -37,12 +38,12 @@ class Verdicts : public ::testing::Test {
   void write(const std::string& name, const std::string& text) {
     io::write_file(result_.directory + "/" + name, text);
   }
-  /// Writes run.json with these entries of its motion.
+  /// Writes run.json with the given entries in its motion and the given warnings.
   void run(const std::string& motion, const std::string& warnings = "") {
     write("run.json", "{\"status\": \"done\", \"warnings\": [" + warnings +
                           "], \"motion\": {\"steps\": 2, \"newton_iterations\": 5" + motion + "}}");
   }
-  void expect(Verdict verdict, const std::string& part) {
+  void expect(StabilityVerdict verdict, const std::string& part) {
     const Assessment out = assess(result_);
     EXPECT_EQ(to_string(out.verdict), to_string(verdict)) << out.reason;
     EXPECT_TRUE(contains(out.reason, part)) << out.reason;
@@ -58,10 +59,10 @@ class Verdicts : public ::testing::Test {
 };
 
 TEST_F(Verdicts, StableWithTheNumbersOfTheRun) {
-  run(R"(, "energy_defect": 5e-7, "constraint_drift": 1e-12, "velocity_drift": 1e-6)"
+  run(R"(, "energy_error": 5e-7, "constraint_drift": 1e-12, "velocity_drift": 1e-6)"
       R"(, "rejected_steps": 3, "condition": 1e9, "smallest_area_ratio": 0.9)");
   const Assessment out = assess(result_);
-  EXPECT_EQ(out.verdict, Verdict::stable) << out.reason;
+  EXPECT_EQ(out.verdict, StabilityVerdict::stable) << out.reason;
   const std::array<double, 7> wanted = {5e-7, 1e-12, 1e-6, 2.5, 3, 1e9, 0.9};
   for (size_t i = 0; i < wanted.size(); ++i) EXPECT_EQ(out.numbers[i], wanted[i]) << kRunNumbers[i];
 }
@@ -69,38 +70,38 @@ TEST_F(Verdicts, StableWithTheNumbersOfTheRun) {
 TEST_F(Verdicts, ANumberThatIsNotFiniteIsWrong) {
   for (const char* bad : {"nan", "-nan", "inf", "-inf", "NaN"}) {
     write("loads/plate.csv", std::string("time,force\n0,1\n1,") + bad + "\n");
-    expect(Verdict::wrong, "loads/plate.csv:3");
+    expect(StabilityVerdict::wrong, "loads/plate.csv:3");
   }
   write("loads/plate.csv", "nanometre,info\n1e-9,2\n");
-  expect(Verdict::stable, "");
-  run(R"(, "energy_defect": null)");  // JSON has no NaN
-  expect(Verdict::wrong, "motion.energy_defect");
+  expect(StabilityVerdict::stable, "");
+  run(R"(, "energy_error": null)");  // JSON has no NaN; the program writes null.
+  expect(StabilityVerdict::wrong, "motion.energy_error");
 }
 
 TEST_F(Verdicts, CrashesAndHangsAreWrong) {
   failed(-1, "ended by signal 11");
   result_.ending = {-1, SIGSEGV, false, 1};
-  expect(Verdict::wrong, "signal 11");
+  expect(StabilityVerdict::wrong, "signal 11");
   result_.ending = {-1, SIGKILL, true, 60};
-  expect(Verdict::wrong, "did not end");
+  expect(StabilityVerdict::wrong, "did not end");
   failed(1, "unexpected: std::bad_alloc");
-  expect(Verdict::wrong, "std::bad_alloc");
+  expect(StabilityVerdict::wrong, "std::bad_alloc");
 }
 
 TEST_F(Verdicts, TimeLimitsAndWarningsDegrade) {
   run("", R"("the balance of energy is missed by 20 %")");
-  expect(Verdict::degraded, "missed by 20 %");
+  expect(StabilityVerdict::degraded, "missed by 20 %");
   failed(4, "ended after 60 CPU seconds");
   result_.ending.over_time = true;
-  expect(Verdict::degraded, "60 CPU seconds");
+  expect(StabilityVerdict::degraded, "60 CPU seconds");
 }
 
 TEST_F(Verdicts, RefusalsNeedAMessage) {
   for (const int code : {2, 3}) {
     failed(code, "a.toml:14:13: body.thickness = -1: a thickness is positive [m]");
-    expect(Verdict::refused, "a.toml:14:13: body.thickness");
+    expect(StabilityVerdict::refused, "a.toml:14:13: body.thickness");
     failed(code, "");
-    expect(Verdict::wrong, "");
+    expect(StabilityVerdict::wrong, "");
   }
 }
 
@@ -122,7 +123,7 @@ TEST(Suites, EveryOneHasAShippedCaseItAppliesTo) {
   EXPECT_THROW(suite("nobody"), Error);
 }
 
-// Every key that a row changes exists in the case.
+// Every key that a suite changes exists in the case.
 TEST(Suites, ChangeKeysThatCasesHave) {
   for (const std::string& name : shipped_cases()) {
     const Scene scene = shipped(name);
@@ -148,7 +149,9 @@ TEST(Children, EndWithinTheirLimits) {
         "exec dd if=/dev/zero of=/dev/null bs=3G count=1"})
     children.push_back({{"-c", what}, scratch / std::to_string(children.size()), "/bin/sh"});
   ChildLimits limits;
-  limits.seconds = 1;  // and ten on the clock, in which a busy machine starts a shell
+  // CPU time [s]; the limit of wall time is ten times as long, because a busy machine starts a
+  // shell slowly.
+  limits.seconds = 1;
   limits.grace = 0.5;
   limits.memory = 2e9;
   std::vector<Ending> endings(children.size());
@@ -163,7 +166,7 @@ TEST(Children, EndWithinTheirLimits) {
   EXPECT_EQ(endings[2].signal, SIGABRT);
   EXPECT_FALSE(endings[2].over_time);
   EXPECT_EQ(endings[3].code, 0);
-  EXPECT_EQ(endings[4].code, 1);  // dd: memory exhausted
+  EXPECT_EQ(endings[4].code, 1);  // dd cannot allocate its memory.
 }
 
 Words command(const std::string& folder, const Words& more) {
@@ -183,7 +186,7 @@ TEST(Stability, RunsSuitesAndTakesUpWhatItHas) {
   const Words suites = table.texts("suite"), verdicts = table.texts("verdict");
   EXPECT_EQ(suites, (Words{"base", "rho_inf", "rho_inf", "rho_inf", "step", "step", "step", "step",
                            "step", "step"}));
-  // Without damping the pin's forces may alternate: a warning of the run says so.
+  // With rho_inf = 1 (no numerical damping) the pin forces may alternate; the run warns about it.
   EXPECT_EQ(Words(verdicts.begin(), verdicts.begin() + 4),
             (Words{"stable", "stable", "stable", "degraded"}));
   EXPECT_TRUE(contains(table.texts("reason")[3], "rho_inf = 1"));
@@ -201,7 +204,7 @@ TEST(Stability, AWrongRowIsExitCode3) {
   const std::string folder = scratch / "out";
   const Words words = command(folder, {"--suites", "rho_inf", "--quiet"});
   ASSERT_EQ(test::flexmorph(scratch, words).code, 0);
-  // A number that cannot be true, in the files of a row that is not run again.
+  // A value that is not a number is added to the files of a row that is not run again.
   const std::string path = folder + "/plate_pendulum/rho_inf_1/motion.csv";
   io::write_file(path, contents_of(path) + "nan\n");
   const Ended ended = test::flexmorph(scratch, words);
@@ -221,7 +224,7 @@ TEST(Stability, RefusesWhatIsNotThere) {
   }
 }
 
-// The maps and tables are the same whatever the locale of the program that writes them.
+// Maps and tables do not depend on the locale of the program that writes them.
 TEST(Stability, WritesTheSameInEveryLocale) {
   const Scratch scratch;
   StabilityRow row;

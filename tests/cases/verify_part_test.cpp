@@ -1,5 +1,5 @@
-// `flexmorph verify`: a part that is drawn as the design, or as uniform material, has the numbers
-// of these; material that is missing is named; drawings that cannot be put in are refused.
+// Shows that `flexmorph verify` reproduces the numbers of a design or of uniform material from a
+// drawing of it, names missing material, and refuses drawings that cannot be used.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using Ring = std::vector<Vec2>;
 
-/// A drawing of closed polylines in metres, another unit by its number.
+/// Returns a drawing of closed polylines; `unit` is the number of the DXF unit, 6 for metres.
 std::string dxf(const std::vector<Ring>& rings, int unit = 6,
                 const std::string& layer = "OUTLINE") {
   std::ostringstream out;
@@ -45,7 +45,7 @@ Ended verify(const Scratch& scratch, const std::string& name, const std::string&
 
 json results(const Scratch& scratch) { return run_json(scratch / "verified"); }
 
-/// The numbers of the part over those of another column, by name.
+/// Returns the numbers of the part divided by those of another column, by name.
 std::map<std::string, double> ratios(const json& run, const std::string& column) {
   std::map<std::string, double> out;
   for (const json& row : run["verify"]["numbers"])
@@ -54,7 +54,7 @@ std::map<std::string, double> ratios(const json& run, const std::string& column)
   return out;
 }
 
-/// The short plate on few cells: half of its motion, in which no line comes in.
+/// Overrides for the short plate on few cells: half of its motion, in which no line is inserted.
 const Words kShort = {"design.cell=0.01",
                       "design.min_thickness=0.01",
                       "design.half_length=0.05",
@@ -67,7 +67,8 @@ const Words kShort = {"design.cell=0.01",
                       "optimizer.max_iterations=0",
                       "expect="};
 
-/// Evaluates two bars beside each other in the short plate.
+/// Evaluates a design of two bars side by side and a cross bar in the short plate. @returns the run
+/// folder
 std::string run_bars(const Scratch& scratch) {
   const std::string bars = scratch.write("bars.csv",
                                          "X0,Y0,half_length,angle,c1,c2,c3\n"
@@ -81,7 +82,8 @@ std::string run_bars(const Scratch& scratch) {
   return scratch / "run";
 }
 
-// The crisp outline, put back, moves and bends as the design: DXF and STEP.
+// The crisp outline of a design, read back from its DXF or STEP file, has the motion and the static
+// numbers of the design.
 TEST(VerifyPart, DrawnAsTheDesignHasItsNumbers) {
   const Scratch scratch;
   const std::string folder = run_bars(scratch);
@@ -91,32 +93,34 @@ TEST(VerifyPart, DrawnAsTheDesignHasItsNumbers) {
     const json run = results(scratch);
     EXPECT_EQ(run["status"], "done");
     const std::map<std::string, double> beside = ratios(run, "design");
-    for (const char* name : {"mass", "sharp_volume", "sharp_compliance", "body_fitted.compliance",
+    for (const char* name : {"mass", "crisp_volume", "crisp_compliance", "body_fitted.compliance",
                              "body_fitted.largest_stress", "body_fitted.largest_displacement",
                              "min_feature", "min_gap", "pieces", "tip_deflection.largest",
                              "tip_deflection.rms", "strain_energy_integral"})
       EXPECT_TRUE(beside.contains(name)) << file << " " << name;
-    // Fillets keep the stress finite: meshes of different vertices agree on it to their error.
+    // Fillets keep the stress finite: meshes with different vertices agree within their error, 2 %.
     for (const auto& [name, ratio] : beside)
       EXPECT_NEAR(ratio, 1, name == "body_fitted.largest_stress" ? 0.02 : 5e-3)
           << file << " " << name;
-    // It moved on cells, as uniform material did.
-    EXPECT_EQ(run["motion"]["judged_on"], "the cells of the designs");
+    // The part was moved on cells, as was uniform material.
+    EXPECT_EQ(run["motion"]["verified_on"], "the cells of the designs");
     EXPECT_TRUE(ratios(run, "uniform").contains("strain_energy_integral"));
     EXPECT_FALSE(run["results"][0].contains("kkt"));
   }
-  // The numbers beside are those of the design's own run where that has them.
+  // The column "design" contains the numbers of the design's own run as far as that run computed
+  // them.
   const json own = run_json(folder)["results"][0];
   const json last = results(scratch);
   for (const json& row : last["verify"]["numbers"])
-    for (const char* name : {"sharp_volume", "min_feature", "min_gap", "sharp_compliance"})
+    for (const char* name : {"crisp_volume", "min_feature", "min_gap", "crisp_compliance"})
       if (row["name"] == name) {
         EXPECT_NEAR(row["design"].get<double>(), own[name].get<double>(),
                     1e-6 * own[name].get<double>());
       }
 }
 
-// A full rectangle is uniform material of the volume 1; nothing is beside it without a run.
+// A drawing of the full rectangle is uniform material of volume fraction 1. Without a run there is
+// no design to compare with.
 TEST(VerifyPart, FullPlateIsUniformMaterial) {
   const Scratch scratch;
   Words changes = kShort;
@@ -126,24 +130,25 @@ TEST(VerifyPart, FullPlateIsUniformMaterial) {
   EXPECT_EQ(ended.code, 0) << ended.err;
   const json run = results(scratch);
   const std::map<std::string, double> beside = ratios(run, "uniform");
-  for (const char* name : {"mass", "sharp_compliance", "strain_energy_integral"})
+  for (const char* name : {"mass", "crisp_compliance", "strain_energy_integral"})
     EXPECT_TRUE(beside.contains(name)) << name;
   for (const auto& [name, ratio] : beside) EXPECT_NEAR(ratio, 1, 1e-9) << name;
   EXPECT_TRUE(ratios(run, "design").empty());
-  EXPECT_NE(run["verify"]["notes"].dump().find("no design is beside"), std::string::npos);
+  EXPECT_NE(run["verify"]["notes"].dump().find("is not compared with a design"), std::string::npos);
 }
 
-// What moves without cells says so.
+// A case that cannot move a part on cells says so.
 TEST(VerifyPart, HeatHasNoMotionOnCells) {
   cases::Scene hot = cases::read("heated_boom"), cold = cases::read("four_bar");
-  EXPECT_TRUE(cases::motion_notes(hot).empty());  // no part
+  EXPECT_TRUE(cases::motion_notes(hot).empty());  // No note, because no part is given.
   hot.designs[0].part = cold.designs[0].part = {{box(0, 0, 1, 1), {}}};
   ASSERT_EQ(cases::motion_notes(hot).size(), 1u);
-  EXPECT_TRUE(contains(cases::motion_notes(hot)[0], "heat has no motion on cells"));
+  EXPECT_TRUE(contains(cases::motion_notes(hot)[0], "heat has no motion on the design mesh"));
   EXPECT_TRUE(cases::motion_notes(cold).empty());
 }
 
-// A plate at rest: 80 mm x 50 mm, held by a bolt, pulled at a pin; static numbers only.
+// A static plate of 80 mm x 50 mm, held by a bolt and loaded at a pin; only static numbers are
+// computed.
 const std::string kBores = R"(
 [domain]
 name = "plate"
@@ -181,7 +186,7 @@ struct Bores : ::testing::Test {
   Ring bolt = circle_within({0.02, 0.025}, 0.005, 1e-6),
        pin = circle_within({0.06, 0.025}, 0.005, 1e-6);
 
-  /// Verifies rings as a part. @return what was said against it
+  /// Verifies rings as a part. @returns the error output and the output of the program
   std::string said(const std::vector<Ring>& rings, int code) {
     const std::string part = scratch.write("part.dxf", dxf(rings));
     const Ended ended = verify(scratch, name, "plate=" + part);
@@ -200,12 +205,12 @@ TEST_F(Bores, PlateAtRestHasStaticNumbers) {
 }
 
 TEST_F(Bores, MissingMaterialIsNamed) {
-  // Nothing around the bolt.
+  // There is no material around the bolt.
   EXPECT_TRUE(contains(said({box(0.04, 0, 0.08, 0.045), pin}, 5), "support 1"));
   EXPECT_EQ(results(scratch)["status"], "done, not usable");
-  // Nothing around the pin.
+  // There is no material around the pin.
   EXPECT_TRUE(contains(said({box(0, 0, 0.04, 0.045), bolt}, 5), "load 'pin'"));
-  // A tenth of the solid border at the bottom.
+  // A tenth of the solid border at the bottom is missing.
   EXPECT_TRUE(
       contains(said({{{0, 0}, {0.072, 0}, {0.072, 0.004}, {0.08, 0.004}, {0.08, 0.045}, {0, 0.045}},
                      bolt,
@@ -223,19 +228,20 @@ TEST_F(Bores, WrongDrawingsAreRefused) {
   };
   const std::vector<Ring> plate = {box(0, 0, 0.08, 0.05), bolt, pin};
   const std::string good = scratch.write("part.dxf", dxf(plate));
-  refused("arm=" + good, "no design of 'arm'; it designs plate");
-  refused(good, "a part is BODY=FILE");
+  refused("arm=" + good, "no design of 'arm'; the designed bodies are plate");
+  refused(good, "a part has the form BODY=FILE");
   refused("plate=" + scratch / "none.dxf", "none.dxf");
   refused("plate=" + scratch.write("part.svg", "<svg/>"), "a part is a .dxf, .step or .stp file");
-  // Numbers in metres that are called millimetres or nothing, millimetres that are called metres.
-  refused("plate=" + scratch.write("mm.dxf", dxf(plate, 4)), "is its unit right?");
+  // Coordinates in metres with the unit millimetre or no unit, and coordinates in millimetres with
+  // the unit metre, are refused.
+  refused("plate=" + scratch.write("mm.dxf", dxf(plate, 4)), "check the unit");
   refused("plate=" + scratch.write("large.dxf", dxf({box(0, 0, 80, 50)})),
           "lies within the domain");
   refused("plate=" + scratch.write("no.dxf", dxf(plate, 0)), "$INSUNITS");
   refused(
       "plate=" + scratch.write("cross.dxf", dxf({plate[0], pin, box(0.06, 0.022, 0.075, 0.028)})),
-      "crosses another one");
-  // Of a STEP file one solid of the thickness.
+      "crosses another closed curve");
+  // A STEP file must contain one solid of the thickness of the plate.
   const std::string step = scratch / "part.step";
   const Region a{box(0, 0, 0.03, 0.05), {}}, b{box(0.05, 0, 0.08, 0.05), {}};
   const Region both[] = {a, b};

@@ -1,6 +1,7 @@
-// Shows that steps that adapt keep what they promise: errors proportional to the tolerance, order 2
-// of positions, velocities and multipliers from the first step on and with steps of any sizes,
-// states within a step as good as those at its ends, and plates that grow as with equal steps.
+// Shows that adaptive steps attain their target error: errors are proportional to the tolerance;
+// positions, velocities and multipliers have order 2 from the first step on and with steps of any
+// sizes; states within a step are as good as those at its ends; and extending plates move as with
+// equal steps.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,10 +25,10 @@ using testing::exact_swing;
 using testing::RotatingPlate;
 using testing::Swing;
 
-constexpr double kAny = 1e300;   // an allowed error
-constexpr double kTable = 1e-5;  // spacing of exact_swing()
+constexpr double kUnlimited = 1e300;  // an allowed error that accepts every step
+constexpr double kTable = 1e-5;       // spacing of exact_swing()
 
-AlphaSettings sharp(double rho_inf) {
+AlphaSettings crisp(double rho_inf) {
   AlphaSettings settings;
   settings.rho_inf = rho_inf;
   settings.tolerance = 1e-14;
@@ -35,17 +36,19 @@ AlphaSettings sharp(double rho_inf) {
 }
 
 struct Errors {
-  double q = 0, v = 0, lambda = 0, first_lambda = 0;  // largest, and in the first five steps
+  // largest error, and that of the first five steps
+  double q = 0, v = 0, lambda = 0, first_lambda = 0;
 };
 
 enum class Steps { equal, random };
 
-/// 2 s of a pendulum in steps of about h; at random, each between h/1.5 and 1.5 h, the same 40
-/// parts of h again and again.
-/// @param adapts  as adaptive steps, or as fixed ones, which take no notice of their size
+/// Returns the errors over 2 s of a pendulum in steps of about h; random steps are between h/1.5
+/// and 1.5 h, with a period of 40 steps.
+/// @param adapts  true: as adaptive steps; false: as fixed steps, whose formulas do not depend on
+///                changes of their size
 Errors swing(double h, double rho_inf, Steps steps, bool adapts) {
   Workspace model = testing::particle_pendulum();
-  GeneralizedAlpha alpha(model, sharp(rho_inf));
+  GeneralizedAlpha alpha(model, crisp(rho_inf));
   State x = testing::swing_start(model);
   alpha.make_consistent(x);
   if (adapts) alpha.first_step(x, 1, h);
@@ -58,7 +61,7 @@ Errors swing(double h, double rho_inf, Steps steps, bool adapts) {
     const double size = h * parts[static_cast<size_t>(n) % parts.size()];
     const double end = kTable * std::round((x.t + size) / kTable);
     if (adapts)
-      EXPECT_TRUE(alpha.try_step(x, end - x.t, kAny).converged);
+      EXPECT_TRUE(alpha.try_step(x, end - x.t, kUnlimited).converged);
     else
       alpha.advance(x, end, [](const State&) {});
     x.t = end;
@@ -85,32 +88,33 @@ INSTANTIATE_TEST_SUITE_P(RhoInf, AdaptivePendulum, ::testing::Values(0.0, 0.5, 0
                                   std::to_string(static_cast<int>(std::lround(100 * rho.param)));
                          });
 
-// Fixed steps start with a multiplier that misses by O(h): see pendulum_test.
+// The multiplier of fixed steps starts with an error of O(h): see pendulum_test.
 TEST_P(AdaptivePendulum, MultiplierHasOrderTwoFromTheFirstStep) {
   EXPECT_NEAR(order(&Errors::first_lambda, GetParam(), Steps::equal, true), 2, 0.1);
   EXPECT_NEAR(order(&Errors::lambda, GetParam(), Steps::equal, true), 2, 0.1);
   EXPECT_NEAR(order(&Errors::first_lambda, GetParam(), Steps::equal, false), 1, 0.2);
 }
 
-// A random step after every other one is the worst that a controller could do.
+// Alternating random step sizes are the worst case for a controller.
 TEST_P(AdaptivePendulum, StepsOfAnySizesKeepOrderTwo) {
   for (const auto what : {&Errors::q, &Errors::v})
     EXPECT_NEAR(order(what, GetParam(), Steps::random, true), 2, 0.1);
   EXPECT_NEAR(order(&Errors::lambda, GetParam(), Steps::random, true), 2, 0.35);
-  // Steps that take no notice of their sizes lose it.
+  // Without a correction for changing step sizes the order is lost.
   EXPECT_LT(order(&Errors::lambda, GetParam(), Steps::random, false), 1.4);
 }
 
-/// exact_swing() between the entries of its table.
+/// Returns exact_swing() between the entries of its table.
 Swing swing_at(double t) {
   const double low = kTable * std::floor(t / kTable), h = t - low;
   const Swing s = exact_swing(low);
-  // Taylor's second and first order over 1e-5 s at most: errors of 1e-14 rad, 1e-9 rad/s.
+  // Taylor expansions of second and first order over at most 1e-5 s: errors of 1e-14 rad, 1e-9
+  // rad/s.
   const double spin = -testing::kGravity / testing::kLength * std::sin(s.angle);
   return {s.angle + h * (s.rate + 0.5 * h * spin), s.rate + h * spin};
 }
 
-/// The same pendulum as a rigid body on a hinge: m g l / I = g / L.
+/// The pendulum as a rigid body on a hinge: m g l / I = g / L.
 struct RigidPendulum {
   RigidSection section{2, {0.5, 0}, 0.5};
 
@@ -120,12 +124,12 @@ struct RigidPendulum {
     out.add_joint(make_revolute("hinge", {}, {.body = "arm"}));
     return out;
   }
-  static Placement placement() {
+  static BodyPoses body_poses() {
     return [](double) {
       FrameMotion frame;
       frame.angle = exact_swing(0).angle - std::numbers::pi / 2;
       frame.angle_rate = exact_swing(0).rate;
-      return std::vector<Placed>{{"arm", frame, 0}};
+      return std::vector<BodyPose>{{"arm", frame, 0}};
     };
   }
   double angle_error(const Model& model, const State& x) const {
@@ -133,7 +137,7 @@ struct RigidPendulum {
         testing::angle_of(model, "arm", x) + std::numbers::pi / 2 - swing_at(x.t).angle,
         2 * std::numbers::pi));
   }
-  /// Of the hinge's force: m (c̈ - g) with the centre of mass c [N].
+  /// Returns the error of the force of the hinge: m (c̈ - g) with the centre of mass c [N].
   double force_error(Workspace& model, const State& x) const {
     const Swing s = swing_at(x.t);
     const double l = section.center.norm(),
@@ -157,10 +161,10 @@ MotionSettings adaptive(double tolerance, double end) {
   return settings;
 }
 
-/// Largest errors of a run, at its steps and at stops, which no step lands on.
+/// Largest errors of a run, at its steps and at stops, which are inside steps.
 struct RunErrors {
-  double step = 0, stop = 0;              // of the angle [rad]
-  double step_force = 0, stop_force = 0;  // of the hinge [N]
+  double step = 0, stop = 0;              // error of the angle [rad]
+  double step_force = 0, stop_force = 0;  // error of the hinge's force [N]
   double drift = 0;                       // |Φ| and |Φ_q v| at stops
   int stops = 0;
   MotionResult result;
@@ -169,7 +173,7 @@ struct RunErrors {
 RunErrors swing_adaptively(MotionSettings settings, double rho_inf) {
   const RigidPendulum p;
   Workspace model = p.model();
-  settings.placement = p.placement();
+  settings.body_poses = p.body_poses();
   settings.alpha.rho_inf = rho_inf;
   for (int k = 1; k <= 40; ++k) settings.stops.push_back(0.0497 * k);
   RunErrors out;
@@ -180,7 +184,7 @@ RunErrors swing_adaptively(MotionSettings settings, double rho_inf) {
     force = std::max(force, p.force_error(step.model, step.x));
     if (!step.stop) return;
     ++out.stops;
-    if (step.x.t == settings.end) return;  // a step's
+    if (step.x.t == settings.end) return;  // the end of a step
     Constraints c;
     step.model.constraints(step.x, c);
     VectorXd rate = c.rate;
@@ -190,12 +194,12 @@ RunErrors swing_adaptively(MotionSettings settings, double rho_inf) {
   return out;
 }
 
-// States at stops are as good as those at steps, and consistent. Their errors have an order from
-// 1e-3 on: at 1e-2 (steps of 0.1 s) the angle misses by 3 degrees. Multipliers at steps have none.
-// Whether a step may grow depends on the iterations of Newton's method, which the last bit decides,
-// and how sizes change on what is left in the multiplier: between 0.07 and 0.97 N at 1e-4, by
-// settings.alpha.tolerance. They only vanish with the tolerance; those at stops belong to the
-// position.
+// States at stops are as good as those at steps, and consistent. Their errors have an order for
+// tolerances from 1e-3 on: at 1e-2 (steps of 0.1 s) the angle has an error of 3 degrees.
+// Multipliers at steps have no order. Whether a step may grow depends on the iterations of Newton's
+// method, which round-off decides, and the remaining error of the multiplier depends on the changes
+// of step size: between 0.07 and 0.97 N at 1e-4, depending on settings.alpha.tolerance. It only
+// vanishes with the tolerance. Multipliers at stops follow from the position.
 TEST(AdaptiveSteps, ErrorsAreProportionalToTheTolerance) {
   for (const double rho : {0.0, 0.8}) {
     testing::Rate angle, force;
@@ -224,7 +228,7 @@ TEST(AdaptiveSteps, ErrorsAreProportionalToTheTolerance) {
     }
     EXPECT_NEAR(angle.order(), 1, 0.1) << angle.table();
     EXPECT_NEAR(force.order(), 1, 0.15) << force.table();
-    // Of 45 N at most, m (g + l rate²) at the bottom.
+    // The largest force is 45 N, m (g + l rate²) at the bottom.
     EXPECT_LT(step_force.back(), 1e-3 * 45);
     EXPECT_LT(step_force.back(), 0.02 * step_force.front());
   }
@@ -242,14 +246,14 @@ TEST(AdaptiveSteps, LandOnKinksAndKeepTheirLimits) {
   const RigidPendulum p;
   Workspace model = p.model();
   MotionSettings settings = adaptive(1e-2, 1);
-  settings.placement = p.placement();
-  settings.kinks = {0.731, 0.2345};
+  settings.body_poses = p.body_poses();
+  settings.discontinuities = {0.731, 0.2345};
   settings.adaptive->largest = 0.01;
   int met = 0;
   settings.adaptive->first = 1e-3;
   double last = 0, first = 0;
   const MotionResult r = integrate(model, {}, settings, [&](const MotionStep& step) {
-    for (const double kink : settings.kinks) met += step.x.t == kink;
+    for (const double discontinuity : settings.discontinuities) met += step.x.t == discontinuity;
     EXPECT_LE(step.x.t - last, 0.01 + 1e-12);
     if (last == 0 && step.x.t > 0) first = step.x.t;
     last = step.x.t;
@@ -267,7 +271,7 @@ TEST(AdaptiveSteps, NeedAnIntegratorThatKnowsItsError) {
   const RigidPendulum p;
   Workspace model = p.model();
   MotionSettings settings = adaptive(1e-3, 1);
-  settings.placement = p.placement();
+  settings.body_poses = p.body_poses();
   settings.integrator = "energy_momentum";
   try {
     integrate(model, {}, settings, [](const MotionStep&) {});
@@ -278,7 +282,7 @@ TEST(AdaptiveSteps, NeedAnIntegratorThatKnowsItsError) {
   }
 }
 
-/// Errors [m], [m/s], [N] within a step between exact ends at start and start + h.
+/// Returns the errors [m], [m/s], [N] within a step between exact ends at start and start + h.
 std::array<double, 3> within(double start, double h) {
   Workspace model = testing::particle_pendulum();
   const auto exact = [&](double t) {
@@ -303,7 +307,8 @@ std::array<double, 3> within(double start, double h) {
   return {(x.q - c.q).norm(), (x.v - c.v).norm(), (x.lambda - c.lambda).norm()};
 }
 
-// Fifth degree: h⁶ in the position, h⁵ in the velocity and what depends on it.
+// The polynomial has degree five: h⁶ in the position, h⁵ in the velocity and in values that depend
+// on it.
 TEST(DenseOutput, HasTheOrderOfTheQuintic) {
   const char* const names[] = {"q", "v", "lambda"};
   for (size_t k = 0; k < 3; ++k) {
@@ -326,13 +331,14 @@ Growing grow(const RotatingPlate& p, MotionSettings settings) {
   testing::Scene scene = testing::make_scene(p);
   for (int k = 1; k <= 10; ++k) settings.stops.push_back(settings.end * k / 10);
   Growing out;
-  out.result = integrate(scene.model, scene.growths, settings, [&](const MotionStep& step) {
+  out.result = integrate(scene.model, scene.moving_roots, settings, [&](const MotionStep& step) {
     if (step.stop) out.tip.push_back(testing::in_hub(p, step.model, step.x, p.tip()));
   });
   return out;
 }
 
-// Nodes come at the right times, the books balance, and the tip is where small equal steps have it.
+// Nodes are inserted at the right times, the energy balance holds, and the tip agrees with small
+// equal steps.
 TEST(AdaptiveSteps, LandOnChangesOfTheMesh) {
   RotatingPlate p;
   p.speed = 0.5;
@@ -356,17 +362,17 @@ TEST(AdaptiveSteps, LandOnChangesOfTheMesh) {
   for (size_t i = 0; i < 10; ++i) error = std::max(error, (a.tip[i] - b.tip[i]).norm());
   const StepCounts& c = b.result.counts;
   std::printf("tip misses by %.2e m in %d steps (%d inaccurate, %d rejected), defect %.1e\n", error,
-              c.steps, c.inaccurate, c.rejected, b.result.energy_defect);
+              c.steps, c.inaccurate, c.rejected, b.result.energy_error);
   EXPECT_LT(error, 2 * 3e-4 * p.length);
   EXPECT_LT(c.steps, 120);
   EXPECT_EQ(c.rejected, 0);
-  EXPECT_LT(b.result.energy_defect, 1e-3);
+  EXPECT_LT(b.result.energy_error, 1e-3);
   const Growing again = grow(p, adapted);
   EXPECT_EQ(again.result.final.q, b.result.final.q);
 }
 
-// Steps as long as a loose tolerance lets them be leave axial ringing unresolved: their changes
-// must not feed it, until Newton's method asks for shorter ones than a tight tolerance.
+// Steps with a loose tolerance do not resolve axial vibrations. Changes of the step size must not
+// excite them, because Newton's method would then need shorter steps than with a tight tolerance.
 TEST(AdaptiveSteps, LooserTolerancesTakeFewerSteps) {
   RotatingPlate p;
   p.speed = 0.5;

@@ -1,5 +1,5 @@
-// Shows beams in motion: a free one keeps energy and momenta (energy_momentum), a pendulum on a
-// joint converges with order 2 and is the rigid pendulum where it is stiff.
+// Shows that a free beam keeps energy and momenta (energy_momentum), and that a pendulum on a joint
+// converges with order 2 and equals the rigid pendulum if it is stiff.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,13 +34,13 @@ Workspace beam_model(const std::string& term, std::unique_ptr<AncfBeam> beam, do
   return model;
 }
 
-/// ∫ ρ r × ṙ dV by 7 x 4 points and the tables of the element.
+/// Returns ∫ ρ r × ṙ dV by 7 x 4 points and the tables of the element.
 double angular_momentum(const Model& model, const State& x) {
   const Body& body = model.bodies()[0];
   double sum = 0;
   ShapeTable t;
   for (int e = 0; e < body.element->n_elements(); ++e) {
-    body.element->tabulate(e, 12, Tabulate::position, {}, FactorKind::none, t);
+    body.element->tabulate(e, 12, Tabulate::position, {}, ScaleFactorKind::none, t);
     const auto vectors = body.element->vectors(e);
     MatrixXd q(6, 2), v(6, 2);
     for (Eigen::Index k = 0; k < 6; ++k) {
@@ -54,14 +54,14 @@ double angular_momentum(const Model& model, const State& x) {
   return sum;
 }
 
-// A soft curved beam that spins, flies, is bent and deforms at random: 500 steps of 2 ms. Round-off
-// of Newton's method adds up.
+// A soft curved beam rotates, translates, is bent and deforms at random: 500 steps of 2 ms.
+// Round-off of Newton's method accumulates.
 TEST(FreeBeam, KeepsEnergyAndMomenta) {
   for (const char* term : {"gcm", "ecm"}) {
-    Workspace model = beam_model(
-        term,
-        std::make_unique<AncfBeam>(even_nodes(kLength, 8), kHeight, arc_reference(kLength, 1, 8)),
-        1e7, false);
+    Workspace model = beam_model(term,
+                                 std::make_unique<AncfBeam>(uniform_nodes(kLength, 8), kHeight,
+                                                            arc_reference(kLength, 1, 8)),
+                                 1e7, false);
     State x = model.reference();
     std::mt19937 random(4);
     std::uniform_real_distribution<double> part(-1, 1);
@@ -93,7 +93,8 @@ TEST(FreeBeam, KeepsEnergyAndMomenta) {
   }
 }
 
-/// Tip of a pendulum that starts at rest and level, pinned at its root by a revolute joint.
+/// Returns the tip of a pendulum that starts at rest horizontally and is pinned at its root by a
+/// revolute joint.
 Vec2 pendulum_tip(const std::string& integrator_name, double youngs_modulus, double step,
                   double end) {
   Workspace model =
@@ -108,12 +109,13 @@ Vec2 pendulum_tip(const std::string& integrator_name, double youngs_modulus, dou
   integrator->make_consistent(x);
   const int n = static_cast<int>(std::lround(end / step));
   for (int k = 1; k <= n; ++k) integrator->advance(x, end * k / n, [](const State&) {});
-  EXPECT_LT(model.place_motion({"beam", {0, 0}}, x).position.norm(), 1e-10);
-  return model.place_motion({"beam", {kLength, 0}}, x).position;
+  EXPECT_LT(model.location_motion({"beam", {0, 0}}, x).position.norm(), 1e-10);
+  return model.location_motion({"beam", {kLength, 0}}, x).position;
 }
 
-// So soft that the steps resolve what the sudden start rings, stretch of the sections included
-// (260 rad/s): at E = 1e7 Pa and steps of 1 ms phases are anybody's guess.
+// The beam is so soft that the steps resolve the vibrations of the sudden start, including the
+// stretch of the sections (260 rad/s). At E = 1e7 Pa and steps of 1 ms, phases would not be
+// reproducible.
 TEST(PendulumBeam, ConvergesWithOrderTwo) {
   for (const char* name : {"generalized_alpha", "energy_momentum"}) {
     const double end = 0.3;
@@ -126,8 +128,8 @@ TEST(PendulumBeam, ConvergesWithOrderTwo) {
   }
 }
 
-// J φ'' = -m g L/2 cos φ, J = m (L²/3 + h²/12): the rotary inertia of the section counts. Bending
-// moves the tip by about g/ω² = 9.81/1170² m.
+// J φ'' = -m g L/2 cos φ with J = m (L²/3 + h²/12), which includes the rotary inertia of the
+// section. Bending moves the tip by about g/ω² = 9.81/1170² m.
 TEST(PendulumBeam, IsTheRigidPendulumWhereItIsStiff) {
   const double end = 0.6;
   double angle = 0, rate = 0;

@@ -1,6 +1,6 @@
-// A uniform rotating plate on cells beside h16 elements and beside a beam, over a part of the
-// motions that tests/README.md has whole. Bilinear cells are of second order; with 20 across they
-// are as near to h16 as 20 x 4 of those are to the beam.
+// Shows that a uniform rotating plate of cells agrees with h16 elements and with a beam over a
+// fraction of the motions in tests/README.md. Bilinear cells are of second order; with 20 cells
+// across, they are as close to h16 as 20 x 4 of those elements are to the beam.
 #include <gtest/gtest.h>
 
 #include <cstdio>

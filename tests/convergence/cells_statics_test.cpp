@@ -1,7 +1,7 @@
-// Small deflections of a motion on cells are those of the static design problem: with the same
-// stiffness factors, supports and nodal loads compliances agree to 1e-6, in equilibrium and in a
-// motion, and a cut through what carries costs in one what it costs in the other. The plate is
-// designed; half of it is void.
+// Shows that small deflections of a motion on cells agree with the static design problem: with
+// equal stiffness factors, supports and nodal loads, compliances agree to 1e-6 in equilibrium and
+// in a motion, and a cut through a load-carrying member has a similar effect in both. The plate is
+// an optimized design; half of it is void.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -21,10 +21,10 @@ namespace {
 using mmc::test::kGrid, mmc::test::kSection;
 using testing::ShapeSet;
 
-/// F · u of nodal forces (by node) on the plate of cells that is held at its left edge.
-/// @param size  that forces are multiplied with
-double nonlinear_compliance(const fem::Factors& factors, const std::vector<fem::NodalForce>& forces,
-                            double size) {
+/// Returns F · u of nodal forces (by node) on the plate of cells that is held at its left edge.
+/// @param size  factor of the forces
+double nonlinear_compliance(const fem::ScaleFactors& factors,
+                            const std::vector<fem::NodalForce>& forces, double size) {
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(fem::make_membrane(kSection));
   for (const fem::NodalForce& f : forces)
@@ -34,8 +34,8 @@ double nonlinear_compliance(const fem::Factors& factors, const std::vector<fem::
   fem::Body& body =
       model.add_body("plate",
                      std::make_unique<fem::AncfPlate>(
-                         2, ShapeSet::q4, testing::even_lines(0, kGrid.width, kGrid.nx),
-                         testing::even_lines(kGrid.y0, 0.05, kGrid.ny)),
+                         2, ShapeSet::q4, testing::uniform_lines(0, kGrid.width, kGrid.nx),
+                         testing::uniform_lines(kGrid.y0, 0.05, kGrid.ny)),
                      kSection, std::move(terms));
   model.add_joint(
       fem::make_hold("held", "plate", {{.at = {.edge = "root"}, .components = {0, 1}}}));
@@ -51,11 +51,11 @@ double nonlinear_compliance(const fem::Factors& factors, const std::vector<fem::
   return sum;
 }
 
-// A linear plate answers to -F with -u: the mean of both signs has lost what strains of one sign
-// change in first order, and what is left falls with the square of the load. Deflections are 1e-4
-// and 1e-5 of the length.
+// The displacement of a linear plate is odd in F, so that the mean of both signs contains no effect
+// of first order in the strains, and the rest falls with the square of the load. Deflections are
+// 1e-4 and 1e-5 of the length.
 TEST(CellsAndStatics, EquilibriumHasTheComplianceOfTheDesignProblem) {
-  const fem::Factors factors = testing::designed_factors();
+  const fem::ScaleFactors factors = testing::designed_factors();
   ASSERT_LT(factors.stiffness.minCoeff(), 2e-4);
   fem::EslSet set;
   set.deformation.setZero(2 * kGrid.n_nodes());
@@ -79,16 +79,17 @@ TEST(CellsAndStatics, EquilibriumHasTheComplianceOfTheDesignProblem) {
   EXPECT_LT(std::abs(miss[0]), 1e-4);
 }
 
-/// A plate with a mass at its tip that grows by two columns of cells out of a hub that turns.
+/// A plate with a mass at its tip that slides by two columns of cells out of a rotating hub.
 struct SlowMotion {
-  fem::EslSets loads{kGrid, {}};  ///< where the root is on a line of cells
-  double integral = 0;            ///< ∫ U dt [J s]
-  double deflection = 0;          ///< largest, of the tip [m]
+  fem::EslSets loads{kGrid, {}};  ///< Loads at times when the root is on a line of cells.
+  double integral = 0;            ///< Integral ∫ U dt [J s].
+  double deflection = 0;          ///< Largest deflection of the tip [m].
 };
 
-/// @param speed   of growth [m/s]; the hub turns by twice as many radians per second
+/// @param speed   speed of extension [m/s]; the hub rotates by two times as many radians per second
 /// @param shapes  q4: on the cells of the factors; h16: 10 x 2 elements
-SlowMotion move_slowly(const fem::Factors& factors, double speed, ShapeSet shapes = ShapeSet::q4) {
+SlowMotion move_slowly(const fem::ScaleFactors& factors, double speed,
+                       ShapeSet shapes = ShapeSet::q4) {
   testing::RotatingPlate p;
   p.longest = kGrid.width;
   p.length = kGrid.width - 3 * kGrid.dx();
@@ -103,36 +104,36 @@ SlowMotion move_slowly(const fem::Factors& factors, double speed, ShapeSet shape
   testing::Scene scene = testing::make_scene(p);
   const fem::AttachedMass tip{p.tip_mass, p.tip()};
   fem::MotionSettings settings;
-  const double column = kGrid.dx() / speed;  // the time the root takes for one
+  const double column = kGrid.dx() / speed;  // time in which the root passes one column
   settings.end = 2 * column;
   settings.step = column / 20;
   settings.stops = {column, 2 * column};
-  settings.alpha.tolerance = 1e-15;  // displacements are down to 1e-8 of the length
+  settings.alpha.tolerance = 1e-15;  // displacements are as small as 1e-8 of the length
   SlowMotion out;
   double t = 0, u = 0;
-  fem::integrate(scene.model, scene.growths, settings, [&](const fem::MotionStep& step) {
+  fem::integrate(scene.model, scene.moving_roots, settings, [&](const fem::MotionStep& step) {
     out.integral += 0.5 * (step.x.t - t) * (u + step.energies.strain);
     t = step.x.t;
     u = step.energies.strain;
     out.deflection =
         std::max(out.deflection, std::abs(testing::in_hub(p, step.model, step.x, p.tip()).y()));
     if (step.stop && step.x.t > 0)
-      out.loads.sets.push_back(fem::equivalent_static_load(step.model, step.x, scene.growths[0],
-                                                           kGrid, {&tip, 1}, {}, {}));
+      out.loads.sets.push_back(fem::equivalent_static_load(
+          step.model, step.x, scene.moving_roots[0], kGrid, {&tip, 1}, {}, {}));
   });
   return out;
 }
 
-VectorXd compliances(const fem::EslSets& loads, const fem::Factors& factors) {
+VectorXd compliances(const fem::EslSets& loads, const fem::ScaleFactors& factors) {
   mmc::ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
   return compliance.individual(factors.stiffness, factors.mass);
 }
 
-// The loads of a motion hold its inertia, so that nothing need be at rest: at every instant twice
-// the strain energy of small strains is their compliance. Strains fall with the square of the
-// speed, and so does what geometry adds.
+// The loads of a motion contain its inertia, so that it need not be static: at every instant two
+// times the strain energy of small strains is their compliance. Strains fall with the square of the
+// speed, and so do nonlinear effects.
 TEST(CellsAndStatics, MotionHasTheComplianceOfItsLoads) {
-  const fem::Factors factors = testing::designed_factors();
+  const fem::ScaleFactors factors = testing::designed_factors();
   double miss[2] = {0, 0};
   const double speeds[2] = {0.02, 0.005};
   for (const size_t k : {size_t(0), size_t(1)}) {
@@ -151,8 +152,8 @@ TEST(CellsAndStatics, MotionHasTheComplianceOfItsLoads) {
   EXPECT_GT(miss[0], 5 * miss[1]);
 }
 
-/// The upper chord cut through over two columns of cells.
-fem::Factors severed(fem::Factors f) {
+/// Returns factors with the upper chord cut over two columns of cells.
+fem::ScaleFactors severed(fem::ScaleFactors f) {
   const double empty = f.stiffness.minCoeff(), no_mass = f.mass.minCoeff();
   const int i = kGrid.nx / 2;
   for (int j = kGrid.ny - 1; j >= kGrid.ny / 2; --j)
@@ -163,9 +164,10 @@ fem::Factors severed(fem::Factors f) {
   return f;
 }
 
-// A cut shows in the motion on cells as it does in statics; elements over many cells bridge it.
+// A cut has a similar effect in the motion on cells and in statics; elements over many cells bridge
+// it.
 TEST(CellsAndStatics, MotionFeelsACutChord) {
-  const fem::Factors whole = testing::designed_factors(), cut = severed(whole);
+  const fem::ScaleFactors whole = testing::designed_factors(), cut = severed(whole);
   const SlowMotion before = move_slowly(whole, 0.02), after = move_slowly(cut, 0.02);
   EXPECT_LT(after.deflection, 1e-3 * kGrid.width);
   const double statics =

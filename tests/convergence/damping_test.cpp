@@ -1,7 +1,7 @@
-// Shows damped bodies in motion: the first bending mode of a free beam and of a free strip in space
-// decays and swings as the closed form of a stiffness-proportional damping says; the balance with
-// the dissipated work has a defect of second order; energy_momentum takes out exactly what it
-// counts; and a hot body that grows and is held does so, too.
+// Shows that damped bodies move correctly: the decay and the frequency of the first bending mode of
+// a free beam and of a free strip in space are the closed form of stiffness-proportional damping;
+// the energy error of the balance with dissipation is of second order; and energy_momentum
+// dissipates the energy of its balance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,24 +25,24 @@ using Names = std::vector<std::string>;
 constexpr double kLength = 1, kThickness = 0.01;
 const PlaneSection kSection{kThickness, 1e9, 0.3, 1000};
 
-/// A free beam of height kThickness, or a free strip in space of that thickness.
+/// Returns a free beam of height kThickness, or a free strip in space of that thickness.
 Workspace free_body(const Names& terms, double damping_time) {
   Workspace model;
   std::unique_ptr<Element> element;
   if (terms[1] == "ecm")
     element = std::make_unique<AncfBeam>(kLength, kThickness, 6);
   else
-    element =
-        std::make_unique<AncfPlate>(3, testing::ShapeSet::h16, testing::even_lines(0, kLength, 4),
-                                    testing::even_lines(0, 0.05, 1));
+    element = std::make_unique<AncfPlate>(3, testing::ShapeSet::h16,
+                                          testing::uniform_lines(0, kLength, 4),
+                                          testing::uniform_lines(0, 0.05, 1));
   model.add_body("body", std::move(element), kSection,
                  make_terms(terms, kSection, {{"damping_time", damping_time}}));
   return model;
 }
 
-/// The first mode that is not rigid.
+/// The first elastic mode.
 struct Mode {
-  double pulsation = 0;
+  double angular_frequency = 0;
   VectorXd shape, momentum;  // φ with φᵀ M φ = 1; M φ
 };
 Mode first_mode(Workspace& model) {
@@ -56,14 +56,14 @@ Mode first_mode(Workspace& model) {
   const testing::Modes modes = testing::modes(MatrixXd(stiffness), MatrixXd(mass));
   const Eigen::Index rigid = model.bodies()[0].element->dim() == 2 ? 3 : 6;
   Mode out;
-  out.pulsation = std::sqrt(modes.values[rigid]);
+  out.angular_frequency = std::sqrt(modes.values[rigid]);
   out.shape = modes.vectors.col(rigid);
   out.momentum = mass * out.shape;
   return out;
 }
 
-/// With σ = τω²/2 and ω_d² = ω² - σ², a = e^(-σt) (...) has (ȧ + σ a)² + ω_d² a² ~ e^(-2σt): the
-/// decay rate follows from its ends, the frequency from its zeros.
+/// With σ = τω²/2 and ω_d² = ω² - σ², the modal coordinate a = e^(-σt) (...) has (ȧ + σ a)² + ω_d²
+/// a² ~ e^(-2σt): the decay rate follows from the ends of the motion, the frequency from the zeros.
 TEST(Decay, OfTheFirstBendingModeIsTheClosedForm) {
   constexpr double ratio = 0.05;  // ζ
   constexpr int periods = 6, steps_per_period = 400;
@@ -71,15 +71,15 @@ TEST(Decay, OfTheFirstBendingModeIsTheClosedForm) {
        {Names{"inertia", "ecm", "damping"}, Names{"inertia", "membrane", "bending", "damping"},
         Names{"inertia", "membrane_assumed", "bending", "damping"}}) {
     Workspace still = free_body(terms, 1);
-    const double omega = first_mode(still).pulsation, tau = 2 * ratio / omega;
+    const double omega = first_mode(still).angular_frequency, tau = 2 * ratio / omega;
     Workspace model = free_body(terms, tau);
     const Mode mode = first_mode(model);
-    // Free ends, Euler and Bernoulli: (4.7300)² sqrt(E I / (ρ A)) / L²; a strip between E and
-    // E / (1 - ν²).
+    // A free Euler-Bernoulli beam has (4.7300)² sqrt(E I / (ρ A)) / L²; the modulus of a strip is
+    // between E and E / (1 - ν²).
     const double slender = std::pow(4.730040745 / kLength, 2) * kThickness *
                            std::sqrt(kSection.youngs_modulus / (12 * kSection.density));
-    EXPECT_GT(mode.pulsation, 0.995 * slender);
-    EXPECT_LT(mode.pulsation, slender / std::sqrt(1 - 0.09));
+    EXPECT_GT(mode.angular_frequency, 0.995 * slender);
+    EXPECT_LT(mode.angular_frequency, slender / std::sqrt(1 - 0.09));
 
     const double sigma = 0.5 * tau * omega * omega,
                  omega_d = std::sqrt(omega * omega - sigma * sigma);
@@ -87,7 +87,7 @@ TEST(Decay, OfTheFirstBendingModeIsTheClosedForm) {
     const VectorXd rest = x.q;
     x.v = 1e-4 * kLength * omega * mode.shape / mode.shape.lpNorm<Eigen::Infinity>();
     IntegratorSettings settings;
-    settings.alpha.rho_inf = 1;  // nothing but the material damps
+    settings.alpha.rho_inf = 1;  // no numerical damping
     const auto alpha = make_integrator(model, settings);
     alpha->make_consistent(x);
     const double h = 2 * std::numbers::pi / omega / steps_per_period;
@@ -117,15 +117,15 @@ TEST(Decay, OfTheFirstBendingModeIsTheClosedForm) {
 }
 
 struct Outcome {
-  double defect = 0, dissipated = 0, energy = 0;  // of the largest energy
+  double energy_error = 0, dissipated = 0, energy = 0;  // relative to the initial energy
   Vec3 momentum = Vec3::Zero();
 };
-/// A free body that is bent, spins [rad/s] and flies.
+/// Integrates a free body that is bent, rotates [rad/s] and translates.
 Outcome run(const Names& terms, const std::string& integrator, double spin, double h, double end) {
   Workspace model = free_body(terms, 2e-3);
   const Mode mode = first_mode(model);
   State x = model.reference();
-  x.v = 0.02 * kLength * mode.pulsation * mode.shape / mode.shape.lpNorm<Eigen::Infinity>();
+  x.v = 0.02 * kLength * mode.angular_frequency * mode.shape / mode.shape.lpNorm<Eigen::Infinity>();
   const Element& element = *model.bodies()[0].element;
   for (int k = 0; k < element.n_vectors(); ++k) {
     const int at = element.dim() * k;
@@ -153,7 +153,7 @@ Outcome run(const Names& terms, const std::string& integrator, double spin, doub
       }
     });
   EXPECT_NEAR(balance.work(), -balance.dissipated(), 1e-15 * first.total());
-  return {balance.defect() / first.total(), balance.dissipated() / first.total(),
+  return {balance.energy_error() / first.total(), balance.dissipated() / first.total(),
           model.energies(x).total() / first.total(), model.momentum(x)};
 }
 
@@ -161,14 +161,14 @@ TEST(Balance, HasADefectOfSecondOrderWithDamping) {
   const auto rate = testing::fit_rate({2e-3, 1e-3, 5e-4, 2.5e-4}, [](double h) {
     const Outcome out = run({"inertia", "ecm", "damping"}, "generalized_alpha", 0, h, 0.1);
     EXPECT_GT(out.dissipated, 1e-3);
-    return std::abs(out.defect);
+    return std::abs(out.energy_error);
   });
   EXPECT_NEAR(rate.order(), 2, 0.2) << rate.table();
   std::cout << rate.table();
 }
 
-// To the round-off of Newton's method, and in space to what GramGradient leaves where an element
-// hardly deforms. Nothing changes the momentum of the flight.
+// The tolerance is round-off of Newton's method, and in space the error of GramGradient for
+// elements that hardly deform. The momentum of the translation does not change.
 TEST(EnergyMomentum, TakesOutWhatItCounts) {
   for (const Names& terms :
        {Names{"inertia", "ecm", "damping"}, Names{"inertia", "membrane", "bending", "damping"}}) {

@@ -1,6 +1,6 @@
-// Shows what the energy-momentum scheme keeps over 10⁴ steps (energy, linear and angular momentum)
-// and that it converges with order 2: free, pinned, with a joint of degree 2 whose motion is known,
-// with a driven hub, with material flow; and how it fails.
+// Shows that the energy-momentum scheme conserves energy, linear and angular momentum over 10⁴
+// steps and converges with order 2: free, pinned, with a joint of degree 2 whose motion is known,
+// with a driven hub, with material flow. Shows also the error without convergence.
 #include "fem/dynamics/integrators/energy_momentum.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Plate {
   ShapeSet shapes = ShapeSet::h16;
   double youngs_modulus = 1e6;
   int nx = 2, ny = 1;
-  double strain = 0.05;  // of the flying plate at the start
+  double strain = 0.05;  // of the free plate at the start
   bool gravity = false, pinned = false;
   PlaneSection section() const { return {0.01, youngs_modulus, 0.3, 2700}; }
 };
@@ -41,15 +41,16 @@ Workspace make_model(const Plate& p) {
   terms.push_back(make_point_mass(0.3, {0.3, 0.1}, gravity));
   Workspace model;
   model.add_body("plate",
-                 std::make_unique<AncfPlate>(2, p.shapes, testing::even_lines(0, 0.3, p.nx),
-                                             testing::even_lines(-0.1, 0.1, p.ny)),
+                 std::make_unique<AncfPlate>(2, p.shapes, testing::uniform_lines(0, 0.3, p.nx),
+                                             testing::uniform_lines(-0.1, 0.1, p.ny)),
                  p.section(), std::move(terms));
   if (p.pinned)
     model.add_joint(make_pin("pin", "plate", {0, -0.1}, [](double) { return FrameMotion{}; }));
   return model;
 }
 
-/// The plate flies, spins at 6 rad/s, is strained by some multiple of `strain` and deforms.
+/// Returns the state of a plate that translates, rotates at 6 rad/s, is strained by a multiple of
+/// `strain` and deforms.
 State flying(const Model& model, double strain) {
   State x = model.reference();
   const Body& body = model.bodies()[0];
@@ -65,7 +66,7 @@ State flying(const Model& model, double strain) {
   return x;
 }
 
-/// Undeformed, at rest, its corner in the pin, hanging to the side.
+/// Returns the undeformed state without velocities, with a corner in the pin, hanging to the side.
 State hanging(const Model& model) {
   State x = model.reference();
   const auto& plate = *model.bodies()[0].element;
@@ -74,7 +75,7 @@ State hanging(const Model& model) {
   return x;
 }
 
-/// ∫ ρh r × ṙ dA and ∫ ρh ṙ dA by 7 x 7 points, with the point mass of make_model().
+/// Returns ∫ ρh r × ṙ dA and ∫ ρh ṙ dA by 7 x 7 points, with the point mass of make_model().
 Vec3 momenta(const Model& model, const State& x) {
   const Body& body = model.bodies()[0];
   const auto& plate = dynamic_cast<const AncfPlate&>(*body.element);
@@ -117,7 +118,7 @@ Drift drift(const Plate& p, double h, int steps) {
   const Energies start = model.energies(x);
   const Vec3 momentum = momenta(model, x);
   Drift out;
-  // A pendulum from rest has zero energy to be relative to: the largest kinetic energy is.
+  // The energy of a pendulum from rest is zero; therefore the scale is the largest kinetic energy.
   double scale = std::abs(start.total()), worst = 0;
   for (int k = 1; k <= steps; ++k)
     scheme.advance(x, k * h, [&](const State& y) {
@@ -151,10 +152,11 @@ TEST(EnergyMomentumKeeps, EnergyAndMomentaOfAFlyingPlate) {
   EXPECT_GT(d.strain_max, 0.01 * d.strain_scale);  // it deforms
 }
 
-// A stiff plate with frequencies far above the steps: the strain changes by about ε = (2U/EcA)^½ in
-// each step, and has a round-off of about 1e-15 from the Gram entries, more far from the origin. So
-// each step makes 1e-15 E c A ε of energy, here 2e-13 J, whatever Newton's tolerance, and 10⁴ steps
-// walk at random to 2e-11 J, 1e-11 of the energy; ten times that is allowed. Momenta do not see it.
+// The frequencies of a stiff plate are far above the steps: the strain changes by about ε =
+// (2U/EcA)^½ in each step, and has a round-off of about 1e-15 from the Gram entries, more far from
+// the origin. Therefore each step causes an energy error of 1e-15 E c A ε, here 2e-13 J, for any
+// tolerance of Newton's method, and a random walk over 10⁴ steps gives 2e-11 J, 1e-11 of the
+// energy; ten times that is allowed. Momenta are not affected.
 TEST(EnergyMomentumKeeps, MomentaOfAStiffPlateAndItsEnergyToTheRoundOffOfTheStrains) {
   Plate p;
   p.youngs_modulus = 1e8;
@@ -176,15 +178,14 @@ TEST(EnergyMomentumKeeps, EnergyOfAPinnedPlateUnderGravity) {
   }
 }
 
-/// State at the end of n equal steps.
+/// Returns the state at the end of n equal steps.
 State run(Integrator& integrator, State x, double end, int n) {
   integrator.make_consistent(x);
   for (int k = 1; k <= n; ++k) integrator.advance(x, end * k / n, [](const State&) {});
   return x;
 }
 
-// Order 2 in q and v, to the limit that generalized-alpha (rho_inf 0.9) with small steps has as
-// well.
+// q and v converge with order 2 to the limit of generalized-alpha (rho_inf 0.9) with small steps.
 TEST(EnergyMomentum, ConvergesWithOrderTwoToTheLimitOfGeneralizedAlpha) {
   for (const bool pinned : {false, true}) {
     Plate p;
@@ -223,7 +224,7 @@ struct SwingErrors {
   double q = 0, v = 0, mean_lambda = 0, lambda = 0, energy = 0, velocity_drift = 0;
 };
 
-/// The pendulum on a rod of constant length, (|r|² - L²)/2 = 0.
+/// Returns the errors of the pendulum on a rod of constant length, (|r|² - L²)/2 = 0.
 SwingErrors swing(double h) {
   Workspace model = testing::particle_pendulum();
   EnergyMomentum scheme(model, {});
@@ -240,7 +241,8 @@ SwingErrors swing(double h) {
       if (k == n - 1) before = y.lambda[0];
       if (k == n) out.mean_lambda = 0.5 * (before + y.lambda[0]);
     });
-  // Mean over the last two steps: the value between them, at the end of the last step but one.
+  // The mean over the last two steps is the value between them, at the end of the last step but
+  // one.
   out.mean_lambda = std::abs(out.mean_lambda - testing::exact_swing(end - h).lambda());
   const testing::Swing exact = testing::exact_swing(end);
   out.q = (x.q - exact.position()).norm();
@@ -269,10 +271,11 @@ TEST(EnergyMomentum, PendulumOnARodConvergesWithOrderTwoAndKeepsItsEnergy) {
 struct Grown {
   State x;
   VectorXd scales;
-  double velocity_drift = 0, defect = 0;
+  double velocity_drift = 0, energy_error = 0;
 };
 
-/// The plate of P 4.2 turns with its hub and grows, up to the first insertion.
+/// Integrates the plate of P 4.2, which rotates with its hub and slides out, up to the first
+/// insertion.
 Grown grow(const std::string& integrator, double h, double speed, WeldMode weld) {
   RotatingPlate p;
   p.speed = speed;
@@ -288,16 +291,17 @@ Grown grow(const std::string& integrator, double h, double speed, WeldMode weld)
   settings.alpha.tolerance = 1e-14;  // steps of 10 us divide its errors by h²
   settings.step = h;
   settings.end = 0.04;
-  const MotionResult r = integrate(scene.model, scene.growths, settings, [](const MotionStep&) {});
+  const MotionResult r =
+      integrate(scene.model, scene.moving_roots, settings, [](const MotionStep&) {});
   EXPECT_TRUE(r.events.empty());
-  // Multipliers of both by the same rule.
+  // Multipliers of both integrators come from one method.
   State x = r.final;
   make_integrator(scene.model, {})->make_consistent(x);
-  return {x, scene.model.scales(), r.velocity_drift, r.energy_defect};
+  return {x, scene.model.scales(), r.velocity_drift, r.energy_error};
 }
 
-// Driven, and driven with material flow: nothing is kept, everything is of order 2: unknowns,
-// rates, multipliers and accelerations at a stop, and the defect of the energy balance.
+// In a driven motion, with and without material flow, nothing is conserved, but everything is of
+// order 2: unknowns, rates, multipliers at a stop, and the energy error of the balance.
 TEST(EnergyMomentum, DrivenAndGrowingPlateConvergesWithOrderTwo) {
   struct Scene {
     double speed;
@@ -311,7 +315,7 @@ TEST(EnergyMomentum, DrivenAndGrowingPlateConvergesWithOrderTwo) {
     const std::vector<double> steps = {2e-4, 1e-4, 5e-5};
     for (const double h : steps) {
       runs.push_back(grow("energy_momentum", h, s.speed, s.weld));
-      EXPECT_LT(runs.back().velocity_drift, 1e-10);  // drives are followed
+      EXPECT_LT(runs.back().velocity_drift, 1e-10);  // drives are satisfied
     }
     const auto check = [&](const char* name, const std::function<double(const Grown&)>& error) {
       testing::Rate rate;
@@ -334,9 +338,9 @@ TEST(EnergyMomentum, DrivenAndGrowingPlateConvergesWithOrderTwo) {
       });
     }
     if (s.speed > 0)
-      check("energy defect", [](const Grown& g) { return g.defect; });
+      check("energy defect", [](const Grown& g) { return g.energy_error; });
     else
-      EXPECT_LT(runs.front().defect, 1e-8);  // a steady rotation
+      EXPECT_LT(runs.front().energy_error, 1e-8);  // a steady rotation
   }
 }
 
@@ -357,14 +361,15 @@ TEST(EnergyMomentum, SaysWhatItCannotDo) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::numerical);
     const std::string text = error.what();
-    for (const char* part : {"energy_momentum: no convergence at t = 0 s, step 1",
-                             "after 2 halvings", "1: |r|", "time.step"})
+    for (const char* part :
+         {"energy_momentum: Newton's method does not converge at t = 0 s, step 1",
+          "after 2 halvings", "1: |r|", "time.step"})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
   EXPECT_EQ(x.q, q);  // the last good state
   EXPECT_EQ(scheme.counts().rejected, 3);
 
-  // With iterations enough for small steps only it recovers by halving.
+  // If the iterations suffice for small steps only, it recovers by halving.
   settings.max_iterations = 6;
   settings.max_halvings = 10;
   EnergyMomentum patient(model, settings);

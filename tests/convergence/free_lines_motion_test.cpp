@@ -1,7 +1,7 @@
-// Free material lines in whole models: a sleeve pushes a bent strip out with the configurational
-// force M²/(2 EI), and with the acceleration that follows from it; a free line that a joint drives
-// moves the plate exactly as a prescribed one; a strip on both sides of a sleeve keeps its energy;
-// lines of nodes come and go beside a free root line.
+// Shows free material lines in whole models: a sleeve pushes a bent strip out with the
+// configurational force M²/(2 EI), and with the acceleration that follows from it; a free line that
+// a joint drives moves the plate exactly as a prescribed line; a strip on both sides of a sleeve
+// conserves its energy; lines of nodes are inserted and removed next to a free root line.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,8 +16,8 @@
 namespace flexmorph::fem {
 namespace {
 
-using testing::even_lines;
 using testing::ShapeSet;
+using testing::uniform_lines;
 using testing::vector;
 
 FrameDrive at_rest(const Vec2& origin) {
@@ -50,11 +50,11 @@ struct Strip {
     terms.push_back(make_bending(section));
     if (inertia) terms.push_back(make_inertia(section));
     terms.push_back(std::move(load));
-    auto lines = even_lines(0, length, n);
+    auto lines = uniform_lines(0, length, n);
     lines[0].free = true;
     Workspace out;
     out.add_body("strip",
-                 std::make_unique<AncfPlate>(3, ShapeSet::h16, lines, even_lines(0, width, 1)),
+                 std::make_unique<AncfPlate>(3, ShapeSet::h16, lines, uniform_lines(0, width, 1)),
                  section, std::move(terms));
     out.add_joint(make_weld("sleeve", "strip", "root", at_rest({0, 0}), WeldMode::direction));
     return out;
@@ -65,7 +65,8 @@ std::unique_ptr<Joint> hold_line(int scalar, double at) {
   return make_line_drive("feed", "strip", scalar, [at](double) { return Motion{at, 0, 0}; });
 }
 
-/// Force out of the sleeve on the free line of a strip bent by a load, in equilibrium [N].
+/// Returns the force out of the sleeve on the free line of a strip bent by a load, in equilibrium
+/// [N].
 double force_of_the_sleeve(const Strip& strip, std::unique_ptr<Term> load) {
   Workspace model = strip.model(std::move(load), false);
   model.add_joint(hold_line(0, 0));
@@ -74,13 +75,14 @@ double force_of_the_sleeve(const Strip& strip, std::unique_ptr<Term> load) {
   return -x.lambda[x.lambda.size() - 1];
 }
 
-// Bigoni et al. (2015): M²/(2 EI) at the exit of a frictionless sleeve, whatever bends the strip.
+// Bigoni et al. (2015): the force is M²/(2 EI) at the exit of a frictionless sleeve for any load
+// that bends the strip.
 TEST(Sleeve, FeelsTheConfigurationalForce) {
   std::vector<double> h, error;
   for (const int n : {2, 4, 8}) {
     Strip strip;
     strip.n = n;
-    const double curvature = 1.5, moment = strip.bending() * curvature;  // 43 degrees in all
+    const double curvature = 1.5, moment = strip.bending() * curvature;  // 43 degrees in total
     const double expected = moment * moment / (2 * strip.bending());
     const double force =
         force_of_the_sleeve(strip, make_edge_moment("free_end", moment / strip.width));
@@ -102,8 +104,8 @@ TEST(Sleeve, FeelsTheConfigurationalForceOfATipLoad) {
   EXPECT_NEAR(force / (moment * moment / (2 * strip.bending())), 1, 0.01);
 }
 
-/// Acceleration out of the sleeve, over M²/(2 EI m), of a strip bent to an arc by an end moment
-/// that stays, released at rest.
+/// Returns the acceleration out of the sleeve, relative to M²/(2 EI m), of a strip that a constant
+/// end moment bends to an arc, released from rest.
 double released(double curvature) {
   const Strip strip;
   const double moment = strip.bending() * curvature;
@@ -117,8 +119,8 @@ double released(double curvature) {
   x.q = bent.q;
   GeneralizedAlpha integrator(model, damped(0.8));
   integrator.make_consistent(x);
-  // Least squares of -p = ½ a t² over 0.1 s: many periods of the axial waves (5 ms) that the
-  // release sets off.
+  // The acceleration is a least-squares fit of -p = ½ a t² over 0.1 s, which is many periods of the
+  // axial waves (5 ms) that the release excites.
   double top = 0, bottom = 0;
   const auto line = x.q.size() - 1;
   while (x.t < 0.1 - 1e-9)
@@ -130,8 +132,8 @@ double released(double curvature) {
   return top / bottom / (moment * moment / (2 * strip.bending()) / strip.mass());
 }
 
-// Every point slides along the arc, so that m v' = M²/(2 EI); but for the moments of the strip's
-// own inertia about its curved axis, of the order of the square of the angle.
+// Every point slides along the arc, so that m v' = M²/(2 EI), except for the moments of the strip's
+// own inertia about its curved axis, which are of the order of the square of the angle.
 TEST(Sleeve, ReleasesABentStripWithTheRightAcceleration) {
   const double half = released(0.5), quarter = released(0.25);  // 14 and 7 degrees
   std::printf("acceleration / (M^2/(2 EI m)): %.5f, %.5f\n", half, quarter);
@@ -139,8 +141,8 @@ TEST(Sleeve, ReleasesABentStripWithTheRightAcceleration) {
   EXPECT_NEAR((half - 1) / (quarter - 1), 4, 1);
 }
 
-// P 4.2 with its root line prescribed, and with the same line free and driven by a constraint.
-TEST(FreeLine, DrivenByAJointMovesAsAPrescribedOne) {
+// P 4.2 with a prescribed root line must equal P 4.2 with a free root line driven by a constraint.
+TEST(EulerianLine, DrivenByAJointMovesAsAPrescribedOne) {
   const auto drive = [](double t) { return Motion{0.5 - 0.4 * t, -0.4, 0}; };
   const auto spin = [](double t) {
     FrameMotion out;
@@ -150,7 +152,7 @@ TEST(FreeLine, DrivenByAJointMovesAsAPrescribedOne) {
   };
   const PlaneSection section{0.01, 1e8, 0.3, 2700};
   const auto run = [&](bool free) {
-    auto lines = even_lines(0.5, 1, 4);
+    auto lines = uniform_lines(0.5, 1, 4);
     lines[0].free = free;
     if (!free) lines[0].drive = drive;
     std::vector<std::unique_ptr<Term>> terms;
@@ -158,19 +160,20 @@ TEST(FreeLine, DrivenByAJointMovesAsAPrescribedOne) {
     terms.push_back(make_inertia(section));
     terms.push_back(make_point_mass(0.5, {1, 0}, VectorXd()));
     Workspace model;
-    model.add_body("strip",
-                   std::make_unique<AncfPlate>(2, ShapeSet::h16, lines, even_lines(-0.05, 0.05, 2)),
-                   section, std::move(terms));
+    model.add_body(
+        "strip",
+        std::make_unique<AncfPlate>(2, ShapeSet::h16, lines, uniform_lines(-0.05, 0.05, 2)),
+        section, std::move(terms));
     model.add_joint(make_weld("hub", "strip", "root", spin, WeldMode::edge));
     if (free) model.add_joint(make_line_drive("feed", "strip", 0, drive));
     State x = model.reference();
     const auto n = 2 * model.bodies()[0].element->n_vectors();
     for (Eigen::Index k = 0; k < n; k += 2) {
       if (model.bodies()[0].element->is_position(static_cast<int>(k / 2))) x.q[k] -= 0.5;
-      x.v[k] = -6 * x.q[k + 1];  // rigid rotation ...
+      x.v[k] = -6 * x.q[k + 1];  // a rigid rotation ...
       x.v[k + 1] = 6 * x.q[k];
     }
-    for (Eigen::Index k = 0; k < n; k += 2)  // ... and all material out of the hub
+    for (Eigen::Index k = 0; k < n; k += 2)  // ... and all material moves out of the hub
       if (model.bodies()[0].element->is_position(static_cast<int>(k / 2)) && x.q[k] > 1e-9)
         x.v[k] += 0.4;
     if (free) x.v[n] = drive(0).rate;
@@ -187,12 +190,12 @@ TEST(FreeLine, DrivenByAJointMovesAsAPrescribedOne) {
   EXPECT_LT((prescribed - free).lpNorm<Eigen::Infinity>(), 1e-8);
 }
 
-// Both sides of a sleeve: an inner line is free and nothing leaves the model.
-TEST(FreeLine, AnInnerSleeveKeepsEnergyAndOrder) {
+// The strip is on both sides of a sleeve: an inner line is free, and no material leaves the model.
+TEST(EulerianLine, AnInnerSleeveKeepsEnergyAndOrder) {
   const PlaneSection section{0.005, 1e6, 0.3, 2700};
   const double whole = 0.8, at = 0.3;
   const auto run = [&](double h, double* drift) {
-    auto lines = even_lines(0, whole, 8);
+    auto lines = uniform_lines(0, whole, 8);
     lines[3].value = at;
     lines[3].free = true;
     std::vector<std::unique_ptr<Term>> terms;
@@ -202,7 +205,7 @@ TEST(FreeLine, AnInnerSleeveKeepsEnergyAndOrder) {
     terms.push_back(make_gravity(section, vector(1.0, 0, -2.0)));
     Workspace model;
     model.add_body("strip",
-                   std::make_unique<AncfPlate>(3, ShapeSet::h16, lines, even_lines(0, 0.05, 1)),
+                   std::make_unique<AncfPlate>(3, ShapeSet::h16, lines, uniform_lines(0, 0.05, 1)),
                    section, std::move(terms));
     model.add_joint(make_weld("sleeve", "strip", "line 3", at_rest({at, 0}), WeldMode::direction));
     State x = model.reference();
@@ -223,17 +226,19 @@ TEST(FreeLine, AnInnerSleeveKeepsEnergyAndOrder) {
   for (const double each : h) p.push_back(run(each, &drift));
   std::printf("line at %.6f m, drift of energy %.1e\n", p.back(), drift);
   EXPECT_LT(drift, 1e-7);
-  // As a rigid body it slides by ½ g_x t²; what bends by then is of the order of the squared slope.
+  // A rigid body would slide by ½ g_x t²; the effect of bending is of the order of the squared
+  // slope.
   EXPECT_NEAR((at - p.back()) / (0.5 * 1.0 * 0.1 * 0.1), 1, 0.03);
   const double order = std::log2(std::abs((p[2] - p[1]) / (p[3] - p[2])));
   EXPECT_NEAR(order, 2, 0.3);
 }
 
-/// A strip that its weight pulls out of a sleeve (or that is thrown back into it), while it sags.
+/// A strip that its weight pulls out of a sleeve (or that is pushed back into it), while it sags.
 struct Pulled {
-  double line = 0;          // where the free line is at the end [m]
+  double line = 0;          // position of the free line at the end [m]
   Vec3 tip = Vec3::Zero();  // [m]
-  double jump = 0;          // largest of energies, momentum (relative) and tip by an insertion
+  // largest change of energies, momentum (relative) and tip by an insertion
+  double jump = 0;
   std::vector<MeshEvent> events;
 };
 Pulled pulled(int n, double max_length, double speed, double along) {
@@ -242,13 +247,13 @@ Pulled pulled(int n, double max_length, double speed, double along) {
   strip.n = n;
   strip.section.youngs_modulus = 1e9;
   Workspace model = strip.model(make_gravity(strip.section, vector(along, 0, -4)), true);
-  const std::vector<Growth> growths = {
+  const std::vector<MovingRoot> moving_roots = {
       {"strip", at_rest({0, 0}), max_length, max_length < 1 ? 0.3 * max_length : 0, 0, speed}};
   MotionSettings settings;
   settings.end = 0.2;
   settings.start = Start::rigid;
   Pulled out;
-  const MotionResult r = integrate(model, growths, settings, [](const MotionStep&) {});
+  const MotionResult r = integrate(model, moving_roots, settings, [](const MotionStep&) {});
   out.line = r.final.q[r.final.q.size() - 1];
   out.tip = point_position(model.bodies()[0], r.final, {strip.length, 0});
   out.events = r.events;
@@ -262,19 +267,21 @@ Pulled pulled(int n, double max_length, double speed, double along) {
   return out;
 }
 
-// Lines of nodes come in where the material does, at the end of the step that passes the limit.
+// Lines of nodes are inserted where the material comes out, at the end of the step that passes the
+// limit.
 TEST(FreeRootLine, GetsNewLinesWhereTheStripIsPulledOut) {
   const Pulled grown = pulled(5, 0.12, 0, 9.81), finer = pulled(10, 0.06, 0, 9.81),
                without = pulled(10, 1, 0, 9.81);
   EXPECT_GE(grown.events.size(), 2u);
   EXPECT_TRUE(without.events.empty());
   for (const MeshEvent& e : grown.events) EXPECT_EQ(e.change, MeshChange::insertion);
-  // Forces are balanced after an insertion: the finer mesh is less stiff by so much.
+  // Forces are balanced after an insertion; the tolerance is the difference in stiffness to the
+  // finer mesh.
   EXPECT_LT(grown.jump, 1e-3);
   EXPECT_LT((grown.tip - without.tip).norm(), 0.002 * std::abs(without.tip.z()));
   EXPECT_LT((finer.tip - without.tip).norm(), 0.002 * std::abs(without.tip.z()));
   EXPECT_NEAR(grown.line / without.line, 1, 1e-4);
-  // What comes out brings its speed along: all of it falls freely, but for the sag.
+  // Material enters with its speed, so that all of it falls freely except for the sag.
   EXPECT_NEAR(grown.line / (-0.5 * 9.81 * 0.2 * 0.2), 1, 0.03);
 }
 

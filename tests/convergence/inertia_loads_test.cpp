@@ -1,7 +1,7 @@
-// Shows that equivalent static loads of the kind `inertia`, put on the design mesh, reproduce the
-// deflection of the dynamic run: within 6 % of the largest deflection at every load time.
-// The rest is centrifugal stiffening, which linear statics does not know: it has one sign, and
-// falls with the square of the spin.
+// Shows that equivalent static loads of the kind `inertia` on the design mesh reproduce the
+// deflection of the dynamic run, within 6 % of the largest deflection at every load time. The
+// difference is centrifugal stiffening, which linear statics does not contain: it has one sign and
+// falls with the square of the angular velocity.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,13 +24,13 @@ struct Deflections {
     for (const double d : dynamic) out = std::max(out, std::abs(d));
     return out;
   }
-  /// Largest difference, relative to the largest deflection.
+  /// Returns the largest difference relative to the largest deflection.
   double difference() const {
     double out = 0;
     for (size_t i = 0; i < time.size(); ++i) out = std::max(out, std::abs(statics[i] - dynamic[i]));
     return out / largest();
   }
-  /// Slope of the line statics = (1 + slope) dynamic through the origin.
+  /// Returns the slope of the line statics = (1 + slope) dynamic through the origin.
   double excess() const {
     double sd = 0, dd = 0;
     for (size_t i = 0; i < time.size(); ++i) {
@@ -48,7 +48,7 @@ struct Deflections {
   }
 };
 
-/// F = -M a + f on the design mesh, full material.
+/// Returns F = -M a + f on the design mesh with full material.
 MatrixXd forces(const std::vector<EslSet>& sets, const StaticSolver& solver,
                 const PlaneSection& section) {
   const Grid& g = solver.grid();
@@ -84,10 +84,10 @@ Deflections compare(double omega, double step) {
   settings.step = step;
   for (int k = 1; k <= 20; ++k) settings.stops.push_back(0.05 * k);
   std::vector<EslSet> sets;
-  integrate(scene.model, scene.growths, settings, [&](const MotionStep& s) {
+  integrate(scene.model, scene.moving_roots, settings, [&](const MotionStep& s) {
     if (s.stop)
       sets.push_back(
-          equivalent_static_load(s.model, s.x, scene.growths[0], grid, {&tip, 1}, {}, {}));
+          equivalent_static_load(s.model, s.x, scene.moving_roots[0], grid, {&tip, 1}, {}, {}));
   });
   StaticSolver solver(grid, p.section);
   solver.factorize(VectorXd::Ones(grid.n_cells()));
@@ -112,8 +112,9 @@ TEST(InertiaLoads, ReproduceTheDynamicDeflection) {
   quarter.print("omega / 4");
   ASSERT_EQ(full.time.size(), 20u);
   EXPECT_LT(full.difference(), 0.06);
-  // Pulled outwards, the plate is stiffer than its linear statics, always; a quarter of the spin
-  // has a sixteenth of the pull. What is left there is the difference of the two meshes.
+  // The centrifugal tension makes the plate stiffer than its linear statics at all times; a quarter
+  // of the angular velocity gives a sixteenth of the tension. The remaining difference is that of
+  // the two meshes.
   EXPECT_GT(full.excess(), 0.01);
   EXPECT_NEAR(quarter.excess() / full.excess(), 1.0 / 16, 0.06);
   EXPECT_LT(quarter.difference(), 0.01);

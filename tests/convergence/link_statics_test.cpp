@@ -1,6 +1,6 @@
-// The loads of a link between two pins return its strains: at the unchanged design, on the same
-// cells with the same factors, the static problem has the strain energy and the displacements of
-// the motion, with either support, in the limit of small loads. Half of the link is void.
+// Shows that the loads of a link between two pins reproduce its strains: for the unchanged design,
+// on equal cells with equal factors, the static problem has the strain energy and the displacements
+// of the motion with either support, in the limit of small loads. Half of the link is void.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -20,11 +20,11 @@ using testing::ShapeSet;
 
 const std::array<Vec2, 2> kPins = {kGrid.node_position(2, 5), kGrid.node_position(59, 5)};
 
-/// The load of the link at an instant at which it is accelerated like this, in equilibrium with its
-/// inertia. Joints keep both pins where they are, so that one more force acts along the line than
-/// its balance could tell.
-/// @param size  that accelerations are multiplied with
-fem::EslSet load_of_motion(const fem::Factors& factors, double size) {
+/// Returns the load of the link at an instant with prescribed accelerations, in equilibrium with
+/// its inertia. Joints hold both pins, so that the balance alone does not determine the force along
+/// their line.
+/// @param size  factor of the accelerations
+fem::EslSet load_of_motion(const fem::ScaleFactors& factors, double size) {
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(fem::make_membrane(kSection));
   terms.push_back(fem::make_inertia(kSection));
@@ -32,8 +32,8 @@ fem::EslSet load_of_motion(const fem::Factors& factors, double size) {
   fem::Body& link =
       model.add_body("link",
                      std::make_unique<fem::AncfPlate>(
-                         2, ShapeSet::q4, testing::even_lines(0, kGrid.width, kGrid.nx),
-                         testing::even_lines(kGrid.y0, 0.05, kGrid.ny)),
+                         2, ShapeSet::q4, testing::uniform_lines(0, kGrid.width, kGrid.nx),
+                         testing::uniform_lines(kGrid.y0, 0.05, kGrid.ny)),
                      kSection, std::move(terms));
   std::vector<fem::AttachedJoint> joints;
   for (const Vec2& pin : kPins) {
@@ -57,16 +57,16 @@ fem::EslSet load_of_motion(const fem::Factors& factors, double size) {
                                      fem::joint_forces(model, x, model.body("link"), joints), {});
 }
 
-// A linear link answers to -F with -u: the mean of both signs has lost what geometry changes in
-// first order, and what is left falls with the square of the load.
+// The displacement of a linear link is odd in F, so that the mean of both signs contains no
+// nonlinear effect of first order, and the rest falls with the square of the load.
 TEST(LinkStatics, LoadsReturnTheStrainsOfTheMotion) {
-  const fem::Factors factors = testing::designed_factors();
+  const fem::ScaleFactors factors = testing::designed_factors();
   ASSERT_LT(factors.stiffness.minCoeff(), 2e-4);
   const std::array<int, 2> pins = {fem::node_at(kGrid, kPins[0]), fem::node_at(kGrid, kPins[1])};
   for (const mmc::Support support : {mmc::Support::pins, mmc::Support::floating}) {
     double miss[2] = {0, 0}, moved[2] = {0, 0}, deflection = 0;
     for (const size_t k : {size_t{0}, size_t{1}}) {
-      VectorXd odd_static, odd_motion;
+      VectorXd implausible_static, implausible_motion;
       for (const double sign : {1.0, -1.0}) {
         const fem::EslSet set = load_of_motion(factors, sign * (k == 0 ? 1e-3 : 1e-4));
         mmc::ComplianceEvaluator statics({kGrid, {set}, pins}, kSection,
@@ -76,18 +76,18 @@ TEST(LinkStatics, LoadsReturnTheStrainsOfTheMotion) {
         miss[k] += 0.5 * (twice / (2 * set.strain_energy) - 1);
         const VectorXd u = statics.displacement(factors.stiffness, factors.mass, 0);
         if (sign > 0)
-          odd_static = u, odd_motion = set.deformation;
+          implausible_static = u, implausible_motion = set.deformation;
         else
-          odd_static -= u, odd_motion -= set.deformation;
+          implausible_static -= u, implausible_motion -= set.deformation;
         deflection = set.deformation.lpNorm<Eigen::Infinity>();
       }
-      moved[k] = (odd_static - odd_motion).norm() / odd_motion.norm();
+      moved[k] = (implausible_static - implausible_motion).norm() / implausible_motion.norm();
       std::printf("%s, deflection %.1e m: energy %.1e, displacements %.1e apart\n",
                   support == mmc::Support::pins ? "pins" : "floating", deflection, miss[k],
                   moved[k]);
     }
     EXPECT_LT(std::abs(miss[1]), 1e-9);
-    // Displacements of `floating` are those in another frame.
+    // Displacements of `floating` belong to another frame.
     if (support == mmc::Support::pins) {
       EXPECT_LT(moved[1], 1e-9);
     }

@@ -1,8 +1,8 @@
 // Shows the order of generalized-alpha on a pendulum in Cartesian coordinates (index 3) whose
 // motion is known: 2 in position, velocity and multiplier at the end; a start-up transient of order
-// 1 in the largest error of the multiplier; a drift of the velocity constraint that stays of
-// order 2. Also: a joint whose Φ_q depends on q converges quadratically through its part of the
-// tangent.
+// 1 in the largest error of the multiplier; a drift of the velocity constraint that remains of
+// order 2. Shows also that the tangent of a joint whose Φ_q depends on q does not change the
+// solution and saves iterations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,15 +21,17 @@ using testing::Swing;
 constexpr double kEnd = 2;
 
 struct Errors {
-  double q = 0, v = 0, lambda = 0;                       // at the end
-  double largest_lambda = 0, drift = 0, late_drift = 0;  // over the run; drift in its second half
+  double q = 0, v = 0, lambda = 0;  // errors at the end
+  // largest over the run; drift in its second half
+  double largest_lambda = 0, drift = 0, late_drift = 0;
   StepCounts counts;
 };
 
 Errors run(double h, double rho_inf, bool exact_tangent = true, AlphaSettings settings = {}) {
   Workspace model = testing::particle_pendulum(exact_tangent);
   settings.rho_inf = rho_inf;
-  // The multiplier sees errors of Newton's method divided by h^2: below its own error at 1 ms.
+  // Errors of Newton's method divided by h^2 affect the multiplier; with this tolerance they are
+  // below its own error at 1 ms.
   settings.tolerance = 1e-14;
   GeneralizedAlpha alpha(model, settings);
   State x = testing::swing_start(model);
@@ -61,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(RhoInf, Pendulum, ::testing::Values(0.0, 0.6, 0.8, 0.9)
                                   std::to_string(static_cast<int>(std::lround(100 * rho.param)));
                          });
 
-// Arnold & Brüls (2007).
+// These orders are proved in Arnold & Brüls (2007).
 TEST_P(Pendulum, ConvergesWithOrderTwoInPositionVelocityAndMultiplier) {
   for (const auto& [name, value] :
        {std::pair{"q", &Errors::q}, {"v", &Errors::v}, {"lambda", &Errors::lambda}}) {
@@ -72,8 +74,8 @@ TEST_P(Pendulum, ConvergesWithOrderTwoInPositionVelocityAndMultiplier) {
   }
 }
 
-// The initial algorithmic acceleration is q̈(0); the one that belongs to the scheme differs by O(h),
-// which shows in the first multipliers and is damped away for rho_inf < 1.
+// The initial algorithmic acceleration is q̈(0); the value consistent with the scheme differs by
+// O(h), which affects the first multipliers and is damped for rho_inf < 1.
 TEST_P(Pendulum, LargestMultiplierErrorIsAStartUpTransient) {
   const auto rate =
       testing::fit_rate(kSteps, [&](double h) { return run(h, GetParam()).largest_lambda; });
@@ -90,8 +92,8 @@ TEST_P(Pendulum, VelocityDriftIsBoundedAndOfOrderTwo) {
 }
 
 // Without damping at infinite frequency (rho_inf = 1) the index-3 multiplier is only weakly stable:
-// position and velocity keep their order, the multiplier does not converge. A known limit of the
-// method, not to be used with constraints.
+// position and velocity keep their order, the multiplier does not converge. This is a known limit
+// of the method, which should not be used with constraints.
 TEST(Pendulum, WithoutDampingOnlyPositionAndVelocityConverge) {
   for (const auto& [name, value] : {std::pair{"q", &Errors::q}, {"v", &Errors::v}}) {
     const auto rate = testing::fit_rate(kSteps, [&](double h) { return run(h, 1).*value; });
@@ -101,7 +103,8 @@ TEST(Pendulum, WithoutDampingOnlyPositionAndVelocityConverge) {
             << exact_swing(kEnd).lambda() << " N/m\n";
 }
 
-// With and without (Φ_qᵀ λ)_q Newton finds the same answer; the exact tangent never takes longer.
+// With and without (Φ_qᵀ λ)_q Newton's method finds the same solution; the exact tangent never
+// needs more iterations.
 TEST(NonlinearJoint, TangentOfTheConstraintForceChangesTheWayNotTheAnswer) {
   for (const double h : {8e-3, 4e-2}) {
     const Errors with = run(h, 0.8), without = run(h, 0.8, false);
@@ -114,7 +117,8 @@ TEST(NonlinearJoint, TangentOfTheConstraintForceChangesTheWayNotTheAnswer) {
   }
 }
 
-// A step that Newton does not manage in its iterations is halved, and grows back.
+// A step for which Newton's method does not converge within its iterations is halved; later steps
+// grow again.
 TEST(StepHalving, RecoversAndReportsWhatItCannotDo) {
   AlphaSettings settings;
   settings.max_iterations = 4;
@@ -133,7 +137,7 @@ TEST(StepHalving, RecoversAndReportsWhatItCannotDo) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::numerical);
     const std::string text = error.what();
-    EXPECT_NE(text.find("no convergence at t = 0 s"), std::string::npos) << text;
+    EXPECT_NE(text.find("does not converge at t = 0 s"), std::string::npos) << text;
     EXPECT_NE(text.find("1: |r|"), std::string::npos) << text;
   }
   EXPECT_THROW(run(0.1, 1.2), Error);

@@ -1,7 +1,7 @@
-// The plate pendulum of P 4.1: a very soft square plate falls about a corner. Energy is kept, the
-// corner's way converges with order 2 in the step, the exact solution's symmetry is kept, a public
-// plate of the same energy goes the same way at first, and material lines that could move but do
-// not change nothing.
+// Shows for the plate pendulum of P 4.1, a very soft square plate that falls about a corner: energy
+// is conserved, the motion of the corner converges with order 2 in the step, the symmetry of the
+// exact solution is kept, a published plate with equal energy moves equally at first, and driven
+// lines that do not move change nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,8 +20,8 @@ using testing::SpacePlate;
 using testing::vector;
 
 struct Fall {
-  std::vector<Vec3> corner;  // at the wanted times
-  double drift = 0;          // of the total energy, over all that potential energy went down and up
+  std::vector<Vec3> corner;  // positions at the given times
+  double drift = 0;          // of the total energy, relative to all changes of the potential energy
   State end;
   StepCounts counts;
 };
@@ -83,15 +83,16 @@ TEST_P(Pendulum, KeepsItsEnergyAndSymmetry) {
               x.counts.newton, x.counts.factorizations);
   EXPECT_LT(x.drift, 1e-3);
   for (const Vec3& c : x.corner) EXPECT_NEAR(c.x(), c.y(), 1e-9);
-  // Exudyn's ANCFThinPlate, 8 x 8, incomplete quartic shapes: the same energy, other shapes. At
+  // Exudyn's ANCFThinPlate, 8 x 8, incomplete quartic shapes, has equal energy and other shapes. At
   // first the fall is nearly rigid; later (0.4 s) meshes and shapes differ by centimetres.
   EXPECT_NEAR(x.corner[0].z(), -0.049049, 1e-4);
   EXPECT_NEAR(x.corner[1].z(), -0.196177, 1e-3);
   EXPECT_NEAR(x.corner[1].x(), 0.29568, 1e-3);
 }
 
-/// Compares the way of the corner by the rule of the bending term with that by 13 x 13 points.
-/// @param end  [s]
+/// Compares the motion of the corner for the default rule of the bending term with that for 13 x 13
+/// points.
+/// @param end  end of the motion [s]
 void expect_same_by_finer_quadrature(double end) {
   std::vector<double> times;
   for (int k = 1; 5e-3 * k < end + 1e-9; ++k) times.push_back(5e-3 * k);
@@ -102,10 +103,11 @@ void expect_same_by_finer_quadrature(double end) {
         points > 0 ? make_terms(p.terms, p.section, {{"bending_points", points}})
                    : make_terms(p.terms, p.section, {});
     terms.push_back(make_gravity(p.section, vector(0, 0, -9.81)));
-    model.add_body("plate",
-                   std::make_unique<testing::AncfPlate>(3, p.shapes, testing::even_lines(0, 0.3, 8),
-                                                        testing::even_lines(0, 0.3, 8)),
-                   p.section, std::move(terms));
+    model.add_body(
+        "plate",
+        std::make_unique<testing::AncfPlate>(3, p.shapes, testing::uniform_lines(0, 0.3, 8),
+                                             testing::uniform_lines(0, 0.3, 8)),
+        p.section, std::move(terms));
     const auto still = [](double) { return std::vector<Motion>(3); };
     model.add_joint(make_pin("pin", "plate", {0, 0}, still, {}));
     return fall(model, 1e-3, times).corner;
@@ -125,8 +127,8 @@ void expect_same_by_finer_quadrature(double end) {
 // polynomial.
 TEST(FoldingPendulum, IsTheSameByFinerQuadrature) { expect_same_by_finer_quadrature(0.45); }
 
-// At 0.58 s the rule of the term is within 0.25 mm of 13 x 13 points, 5 x 5 points are off by 2.9
-// mm. After that the fold snaps, and no two rules stay together.
+// Until 0.58 s the rule of the term is within 0.25 mm of 13 x 13 points, and 5 x 5 points differ by
+// 2.9 mm. After that the fold snaps, and the results of any two rules diverge.
 TEST(LongFoldingPendulum, IsTheSameByFinerQuadrature) { expect_same_by_finer_quadrature(0.58); }
 
 TEST_P(Pendulum, ConvergesWithOrderTwo) {
@@ -138,11 +140,11 @@ TEST_P(Pendulum, ConvergesWithOrderTwo) {
   EXPECT_NEAR(order, 2, 0.2);
 }
 
-// Lines that are driven to stay where they are: the element that could flow is the plain plate.
+// For lines that are driven but do not move, the element with flow must equal the plain plate.
 TEST_P(Pendulum, LinesThatStandStillChangeNothing) {
   const SpacePlate p = pendulum(GetParam(), 3);
   Workspace plain = hung(p);
-  auto lines = testing::even_lines(0, 0.3, 3);
+  auto lines = testing::uniform_lines(0, 0.3, 3);
   for (auto& line : lines) line.drive = [at = line.value](double) { return Motion{at, 0, 0}; };
   Workspace driven;
   std::vector<std::unique_ptr<Term>> terms;
@@ -150,7 +152,7 @@ TEST_P(Pendulum, LinesThatStandStillChangeNothing) {
   terms.push_back(make_gravity(p.section, vector(0, 0, -9.81)));
   driven.add_body(
       "plate",
-      std::make_unique<testing::AncfPlate>(3, GetParam(), lines, testing::even_lines(0, 0.3, 3)),
+      std::make_unique<testing::AncfPlate>(3, GetParam(), lines, testing::uniform_lines(0, 0.3, 3)),
       p.section, std::move(terms));
   const VectorXd a = plain.reference().q;
   State x = plain.reference();
@@ -168,7 +170,7 @@ TEST_P(Pendulum, LinesThatStandStillChangeNothing) {
               1e-13 * std::abs(plain.energies(x).strain));
 }
 
-// Bending has no quadratic energy: its discrete gradient is GramGradient's.
+// The bending energy is not quadratic; its discrete gradient is that of GramGradient.
 TEST(PendulumByEnergyMomentum, KeepsItsEnergy) {
   Workspace model = hung(pendulum(ShapeSet::h16, 3));
   EnergyMomentum integrator(model, EnergyMomentumSettings{});

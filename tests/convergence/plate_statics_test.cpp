@@ -1,4 +1,4 @@
-// Shows plates in space against known solutions: linear plates (Levy's series, Timoshenko &
+// Shows that plates in space have known solutions: linear plates (Levy's series, Timoshenko &
 // Woinowsky-Krieger 1959), roll-up, the elastica, thin limits with and without assumed strains, and
 // the snap-through of a buckled strip.
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ using testing::ShapeSet;
 using testing::SpacePlate;
 using testing::vector;
 
-/// A quarter of the unit square, n x n elements on the whole, its centre at (1/2, 1/2).
+/// Returns a quarter of the unit square, with n x n elements on the whole square and its centre at
+/// (1/2, 1/2).
 SpacePlate quarter(ShapeSet shapes, int n) {
   SpacePlate p;
   p.length = p.width = 0.5;
@@ -36,28 +37,28 @@ SpacePlate supported(ShapeSet shapes, int n) {
   return p;
 }
 
-/// Deflection of the linear plate at a point.
+/// Returns the deflection of the linear plate at a point.
 double deflection(Workspace model, const Vec2& at) {
   return at_point(model, linear_displacement(model, model.reference()), at).z();
 }
 
-/// D w / (q L⁴) at the centre.
+/// Returns D w / (q L⁴) at the centre.
 double uniform(SpacePlate p) {
   return p.stiffness() * deflection(p.model(make_surface_load(vector(0, 0, 1))), {0.5, 0.5});
 }
-/// D w / (P L²) of a point force, a quarter of it on the quarter.
+/// Returns D w / (P L²) under a point force, a quarter of which acts on the quarter of the plate.
 double central(SpacePlate p) {
   return p.stiffness() *
          deflection(p.model(make_point_force({0.5, 0.5}, vector(0, 0, 0.25))), {0.5, 0.5});
 }
-/// 2 D (1 - ν) w / (P L²) at the loaded corner, the other three held.
+/// Returns 2 D (1 - ν) w / (P L²) at the loaded corner; the other three corners are held.
 double twisted(ShapeSet shapes, int n) {
   SpacePlate p;
   p.nx = p.ny = n;
   p.shapes = shapes;
-  p.hold({{HoldPlace::at({0, 0}), NodeVector::r, {0, 1, 2}, {}},
-          {HoldPlace::at({1, 0}), NodeVector::r, {1, 2}, {}},
-          {HoldPlace::at({0, 1}), NodeVector::r, {2}, {}}});
+  p.hold({{HoldLocation::at({0, 0}), NodeVector::r, {0, 1, 2}, {}},
+          {HoldLocation::at({1, 0}), NodeVector::r, {1, 2}, {}},
+          {HoldLocation::at({0, 1}), NodeVector::r, {2}, {}}});
   return 2 * p.stiffness() * (1 - p.section.poisson_ratio) *
          deflection(p.model(make_point_force({1, 1}, vector(0, 0, 1))), {1, 1});
 }
@@ -68,7 +69,8 @@ SpacePlate clamped(ShapeSet shapes, int n) {
   return p;
 }
 
-/// Navier's series of the supported square under uniform load: terms fall like 1/(mn (m²+n²)²).
+/// Returns Navier's series of the supported square under uniform load; terms fall like 1/(mn
+/// (m²+n²)²).
 double navier() {
   double sum = 0;
   for (int m = 1; m < 400; m += 2)
@@ -78,7 +80,7 @@ double navier() {
     }
   return 16 / std::pow(std::numbers::pi, 6) * sum;
 }
-/// Levy's series for the point load; terms fall like 1/m³, the rest is below 1e-9.
+/// Returns Levy's series for the point load; terms fall like 1/m³, and the rest is below 1e-9.
 double levy_point() {
   double sum = 0;
   for (int m = 19999; m > 0; m -= 2) {
@@ -102,9 +104,9 @@ TEST(LinearPlate, SupportedSquareConvergesWithOrderFour) {
   EXPECT_LT(rate.error.back(), 1e-5) << rate.table();
 }
 
-// Published to six digits, 4e-6, which hides the order on fine meshes, and coarse ones (up to 8 x
-// 8) are not yet asymptotic: the order is that of differences, and their limit is the published
-// number.
+// The published value has six digits, 4e-6, which hides the order on fine meshes, and coarse meshes
+// (up to 8 x 8) are not yet asymptotic. Therefore the order is that of differences, and their limit
+// is compared with the published number.
 TEST(LinearPlate, ClampedSquareConvergesWithOrderFour) {
   const double published = 0.00126532, w16 = uniform(clamped(ShapeSet::h16, 16)),
                w32 = uniform(clamped(ShapeSet::h16, 32)), w64 = uniform(clamped(ShapeSet::h16, 64));
@@ -114,7 +116,7 @@ TEST(LinearPlate, ClampedSquareConvergesWithOrderFour) {
   EXPECT_NEAR(w16 / published, 1, 1e-5);
 }
 
-// The deflection under a force has h² log h in it: order 2.
+// The deflection under a force contains h² log h: the order is 2.
 TEST(LinearPlate, PointLoadConvergesWithOrderTwo) {
   const testing::Rate rate = testing::fit_rate({0.25, 0.125, 0.0625}, [](double h) {
     const int n = static_cast<int>(std::lround(1 / h));
@@ -126,7 +128,7 @@ TEST(LinearPlate, PointLoadConvergesWithOrderTwo) {
 
 TEST(LinearPlate, CompleteShapesTwistExactly) { EXPECT_NEAR(twisted(ShapeSet::h16, 2), 1, 1e-9); }
 
-// What the incomplete shapes of P converge to (fem/README.md, Plate element).
+// The incomplete shapes of P converge to these values (fem/README.md, Plate element).
 TEST(LinearPlate, IncompleteShapesStopAtTheirPlateaus) {
   EXPECT_NEAR(uniform(supported(ShapeSet::h12, 16)) / navier(), 1 - 0.047, 0.003);
   EXPECT_NEAR(uniform(clamped(ShapeSet::h12, 16)) / 0.00126532, 1 - 0.022, 0.003);
@@ -134,7 +136,7 @@ TEST(LinearPlate, IncompleteShapesStopAtTheirPlateaus) {
   EXPECT_NEAR(twisted(ShapeSet::h12, 32), 1 - 0.12, 0.003);
 }
 
-/// A strip of unit length without lateral contraction, clamped at its root.
+/// Returns a strip of unit length without lateral contraction, clamped at its root.
 SpacePlate strip(double thickness, const std::string& membrane, int nx = 8) {
   SpacePlate p;
   p.width = 0.2;
@@ -146,7 +148,7 @@ SpacePlate strip(double thickness, const std::string& membrane, int nx = 8) {
   return p;
 }
 
-// End moment 2π E I / L: the tip comes back to the root.
+// The end moment 2π E I / L bends the strip to a full circle, so that the tip returns to the root.
 TEST(LargeBending, StripRollsUpToACircle) {
   const SpacePlate p = strip(1e-2, "membrane_assumed");
   Workspace model = p.model(make_edge_moment("free_end", 2 * std::numbers::pi * p.stiffness()));
@@ -156,8 +158,8 @@ TEST(LargeBending, StripRollsUpToACircle) {
   EXPECT_LT(std::hypot(tip.x(), tip.z()), 1e-3) << tip.transpose();
 }
 
-// In a very thin strip membrane forces are the last digits of the positions; Newton has to stop
-// there.
+// In a very thin strip the membrane forces depend on the last digits of the positions; Newton's
+// method must nevertheless stop.
 TEST(LargeBending, AVeryThinStripRollsUpToACircle) {
   const SpacePlate p = strip(1e-4, "membrane_assumed", 16);
   Workspace model = p.model(make_edge_moment("free_end", 2 * std::numbers::pi * p.stiffness()));
@@ -167,7 +169,7 @@ TEST(LargeBending, AVeryThinStripRollsUpToACircle) {
   EXPECT_LT(std::hypot(tip.x(), tip.z()), 1e-3) << tip.transpose();
 }
 
-/// Relative error of the tip's lift under the load 10 E I / L².
+/// Returns the relative error of the deflection of the tip under the load 10 E I / L².
 double elastica_error(double thickness, const std::string& membrane) {
   const double alpha = 10;
   const SpacePlate p = strip(thickness, membrane);
@@ -182,16 +184,16 @@ TEST(LargeBending, StripIsTheElastica) {
   EXPECT_LT(std::abs(elastica_error(1e-2, "membrane_assumed")), 2e-3);
 }
 
-// Without assumed strains 8 elements are 2 % too stiff at c/L = 1e-4; with them the error stays
-// where the shape functions put it.
+// Without assumed strains 8 elements are 2 % too stiff at c/L = 1e-4; with them the error is that
+// of the shape functions.
 TEST(LargeBending, AssumedStrainsDoNotLockInTheThinLimit) {
   for (const double c : {1e-3, 1e-4})
     EXPECT_LT(std::abs(elastica_error(c, "membrane_assumed")), 1e-3) << c;
   EXPECT_LT(elastica_error(1e-4, "membrane"), -1.5e-2);
 }
 
-/// Lift of the corner of a square cantilever that is bent across its mesh lines by a force D/L at
-/// this corner.
+/// Returns the deflection of the corner of a square cantilever that a force D/L at this corner
+/// bends obliquely to its mesh lines.
 double bent_obliquely(const std::string& membrane, double thickness) {
   SpacePlate p;
   p.nx = p.ny = 8;
@@ -204,24 +206,24 @@ double bent_obliquely(const std::string& membrane, double thickness) {
   return at_point(model, x.q, {1, 1}).z();
 }
 
-// No closed form. CalculiX 2.20 (S8R, *STATIC with NLGEOM, thickness 1e-3) finds 0.37239, 0.37568
-// and 0.37673 on 8 x 8, 16 x 16 and 24 x 24 elements, with an error of order 1: the limit is
-// 0.3789, known to the 0.6 % from the finest mesh to it.
+// There is no closed form. CalculiX 2.20 (S8R, *STATIC with NLGEOM, thickness 1e-3) gives 0.37239,
+// 0.37568 and 0.37673 on 8 x 8, 16 x 16 and 24 x 24 elements, with an error of order 1: the limit
+// is 0.3789. Its uncertainty is the 0.6 % between the finest mesh and the limit.
 TEST(LargeBending, SquareIsThatOfCalculix) {
   EXPECT_NEAR(bent_obliquely("membrane_assumed", 1e-3) / 0.3789, 1, 6e-3);
 }
 
-// Plates under a force D/L bend alike where they are nearly inextensible: of a tenth of the
-// thickness CalculiX finds 2.5 % less (16 x 16 elements, 0.3855 at 1e-2, 0.3757 at 1e-3), and the
-// next tenth takes less than that. Without assumed strains the membrane locks.
+// Nearly inextensible plates have equal deflections under a force D/L: for a tenth of the thickness
+// CalculiX gives 2.5 % less (16 x 16 elements, 0.3855 at 1e-2, 0.3757 at 1e-3), and the next tenth
+// must change it by less. Without assumed strains the membrane locks.
 TEST(LargeBending, SquareDoesNotLockEither) {
   const double assumed = bent_obliquely("membrane_assumed", 1e-4);
   EXPECT_NEAR(assumed / bent_obliquely("membrane_assumed", 1e-3), 1, 2.5e-2);
   EXPECT_LT(bent_obliquely("membrane", 1e-4), 0.99 * assumed);
 }
 
-/// Half of a pinned strip whose ends came closer: the root pinned, the middle a plane of symmetry
-/// at l - δ, buckled upwards.
+/// Half of a pinned strip whose ends were moved towards each other: the root is pinned, the middle
+/// is a plane of symmetry at l - δ, and the strip is buckled upwards.
 struct Buckled {
   static constexpr double kShortening = 1e-3, kThickness = 1e-3, kStiffness = 1e9 * 1e-9 / 12;
 
@@ -238,7 +240,7 @@ struct Buckled {
     plate.hold(middle);
     model = load ? plate.model(std::move(load)) : plate.model();
     x = model.reference();
-    // w = h sin(πX/2) with ∫ w'²/2 = δ, and the sliding that keeps the length.
+    // w = h sin(πX/2) with ∫ w'²/2 = δ, and the axial displacement that keeps the length.
     const double pi = std::numbers::pi, height = 4 * std::sqrt(kShortening) / pi;
     for (const NodeVectors& node : model.bodies()[0].element->nodes()) {
       const double m = node.material.x(), slope = height * pi / 2 * std::cos(pi * m / 2);
@@ -255,10 +257,10 @@ struct Buckled {
   State x;
 };
 
-/// Largest force per width on the half, downwards in the middle, by the theory of shallow buckled
-/// beams with l = 1: w = a sin kX - b kX, a cos k = b from w'(1) = 0, force E I k³ |b|, shortening
-/// ∫ w'²/2 + c² k²/12 = δ. It begins at the buckled shape k = π/2 and comes back to zero force in
-/// the third shape, k = 3π/2.
+/// Returns the largest downward force per width on the half, in the middle, by the theory of
+/// shallow buckled beams with l = 1: w = a sin kX - b kX, a cos k = b from w'(1) = 0, force E I k³
+/// |b|, shortening ∫ w'²/2 + c² k²/12 = δ. The force is zero in the buckled shape k = π/2 and again
+/// in the third shape, k = 3π/2.
 double snap_force() {
   const double c = Buckled::kThickness;
   double largest = 0;
@@ -274,8 +276,8 @@ double snap_force() {
   return largest;
 }
 
-// Shallow theory errs by slopes squared, 4 δ = 4e-3. Past the limit the force vanishes in the third
-// shape, w = -a with a² k²/4 + c² k²/12 = δ.
+// The error of the shallow theory is of the order of squared slopes, 4 δ = 4e-3. Beyond the limit
+// the force vanishes in the third shape, w = -a with a² k²/4 + c² k²/12 = δ.
 TEST(ArcLength, BuckledStripSnapsAtItsLimitLoad) {
   Buckled b(make_edge_load("free_end", vector(0, 0, -snap_force())));
   StaticSettings s;
@@ -301,7 +303,8 @@ TEST(ArcLength, BuckledStripSnapsAtItsLimitLoad) {
   EXPECT_NEAR(height_without_force / third, 1, 5e-3);
 }
 
-// The same limit by displacement control: the middle is driven down, its reaction read off.
+// Displacement control must give the same limit: the middle is driven down, and the largest
+// reaction is taken.
 TEST(ArcLength, LimitLoadIsThatOfDisplacementControl) {
   const auto depth = std::make_shared<double>(0);
   Buckled b;
@@ -336,7 +339,7 @@ TEST(StaticPath, SaysWhereItFailed) {
     EXPECT_EQ(error.kind(), Error::Kind::numerical);
     const std::string text = error.what();
     EXPECT_NE(text.find("load factor 0"), std::string::npos) << text;
-    EXPECT_NE(text.find("residuals of the last attempt: "), std::string::npos) << text;
+    EXPECT_NE(text.find("residuals of the last attempt are "), std::string::npos) << text;
   }
   EXPECT_EQ((x.q - model.reference().q).norm(), 0);  // the last equilibrium
   s.first_step = -1;

@@ -1,7 +1,7 @@
-// Shows the deflection of the growing, rotating plate beside an independent model of it: a
+// Shows that the deflection of the extending, rotating plate agrees with an independent model: a
 // shear-deformable, geometrically exact beam (support/reissner_beam.h), which shares neither
-// kinematics nor strains nor frame nor time integration with the plate. Also why the weld leaves
-// the slopes of the root free by default.
+// kinematics nor strains nor frame nor time integration with the plate. Shows also why the weld
+// leaves the slopes of the root free by default.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,8 @@ const reference::TipHistory& beam(double speed) {
   return known.emplace(speed, reference::simulate(b, VectorXd::LinSpaced(101, 0, 1))).first->second;
 }
 
-/// Root mean square difference of the tip's deflection over 1 s, in percent of its maximum.
+/// Returns the root mean square difference of the tip's deflection over 1 s, in percent of its
+/// maximum.
 double difference(double speed, ShapeSet shapes, WeldMode weld) {
   RotatingPlate p;
   p.speed = speed;
@@ -40,7 +41,7 @@ double difference(double speed, ShapeSet shapes, WeldMode weld) {
   const reference::TipHistory& expected = beam(speed);
   double sum = 0;
   Eigen::Index k = 0;
-  integrate(scene.model, scene.growths, settings, [&](const MotionStep& step) {
+  integrate(scene.model, scene.moving_roots, settings, [&](const MotionStep& step) {
     if (!step.stop && step.x.t > 0) return;
     ASSERT_NEAR(step.x.t, expected.time[k], 1e-9);
     const double d = testing::in_hub(p, step.model, step.x, p.tip()).y() - expected.deflection[k++];
@@ -57,10 +58,11 @@ double difference(double speed, ShapeSet shapes, WeldMode weld) {
   return out;
 }
 
-// With 20 x 4 elements h16 the differences are 0.32 and 1.22 % (0.40 and 1.54 % here):
-// most of them is the models', not the mesh (the clamp of a plate suppresses lateral contraction,
+// With 20 x 4 elements h16 the differences are 0.32 and 1.22 % (0.40 and 1.54 % here). They come
+// mainly from the models and not from the mesh (the clamp of a plate prevents lateral contraction,
 // strains of a beam are averages over the section). The incomplete shapes h12 are stiffer than the
-// plate (plate_statics_test.cpp): 1.10 and 4.38 % here. Limits are 1.15 to 1.5 times what is found.
+// plate (plate_statics_test.cpp): 1.10 and 4.38 % here. The limits are 1.15 to 1.5 times these
+// values.
 TEST(Reissner, PlateMovesLikeTheBeam) {
   EXPECT_LT(difference(0.5, ShapeSet::h16, WeldMode::edge), 0.6);
   EXPECT_LT(difference(0.1, ShapeSet::h16, WeldMode::edge), 2.2);
@@ -68,7 +70,7 @@ TEST(Reissner, PlateMovesLikeTheBeam) {
   EXPECT_LT(difference(0.1, ShapeSet::h12, WeldMode::edge), 5);
 }
 
-// Holding the direction of r_m forbids shear at the root, which a clamped edge has.
+// Holding the direction of r_m prevents shear at the root, which a clamped edge has.
 TEST(Reissner, HoldingSlopesAtTheRootIsWorse) {
   for (const double speed : {0.1, 0.5}) {
     const double edge = difference(speed, ShapeSet::h16, WeldMode::edge);

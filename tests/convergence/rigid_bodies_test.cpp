@@ -1,8 +1,7 @@
-// Shows that rigid bodies in natural coordinates move as mechanics says: a physical pendulum
-// against elliptic functions, a slider-crank against its closed-form kinematics and the power of
-// its drive, springs and dampers against the oscillators they make, all with order 2 of
-// generalized-alpha in positions, velocities and multipliers; and the energy that the
-// energy-momentum scheme keeps.
+// Shows that rigid bodies in natural coordinates move correctly: a physical pendulum agrees with
+// elliptic functions, a slider-crank with its closed-form kinematics and the power of its drive,
+// springs and dampers with their oscillators, all with order 2 of generalized-alpha in positions,
+// velocities and multipliers; the energy-momentum scheme conserves energy.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -22,7 +21,7 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-/// Errors at the end of a run.
+/// Errors at the end of a run; lambda: of multipliers or forces.
 struct Errors {
   double q = 0, v = 0, lambda = 0;
 };
@@ -47,7 +46,8 @@ void advance(Workspace& model, State& x, double end, double h) {
   for (int k = 1; k <= n; ++k) alpha.advance(x, end * k / n, [](const State&) {});
 }
 
-/// A body whose hinge, centre of mass and point r are three points, held at an angle from below.
+/// A body whose hinge, centre of mass and point r are three different points, released at an angle
+/// from below.
 struct PhysicalPendulum {
   RigidSection section{3, {0.4, -0.1}, 0.2};
   Vec2 hinge{-0.3, 0.2};
@@ -56,11 +56,12 @@ struct PhysicalPendulum {
   double length() const { return (section.center - hinge).norm(); }
   double inertia() const { return section.inertia + section.mass * length() * length(); }
   double weight_moment() const { return section.mass * kGravity * length(); }
-  /// T = 4 √(I / m g l) K(sin(θ₀/2)).
+  /// Returns T = 4 √(I / m g l) K(sin(θ₀/2)).
   double period() const {
     return 4 * std::sqrt(inertia() / weight_moment()) * std::comp_ellint_1(std::sin(amplitude / 2));
   }
-  /// Of the body's axis when the line from hinge to centre makes that angle with the vertical.
+  /// Returns the angle of the body's axis when the line from hinge to centre has the given angle to
+  /// the vertical.
   double axis(double swing) const {
     const Vec2 line = section.center - hinge;
     return swing - std::numbers::pi / 2 - std::atan2(line.y(), line.x());
@@ -79,8 +80,8 @@ struct PhysicalPendulum {
   }
 };
 
-// After 5/4 periods it passes the lowest point: ω² = 2 m g l (1 - cos θ₀) / I, and the hinge
-// carries m g + m l ω².
+// After 5/4 periods the pendulum passes the lowest point: ω² = 2 m g l (1 - cos θ₀) / I, and the
+// force of the hinge is m g + m l ω².
 TEST(PhysicalPendulum, ConvergesToEllipticFunctions) {
   const PhysicalPendulum p;
   const double end = 1.25 * p.period();
@@ -98,14 +99,15 @@ TEST(PhysicalPendulum, ConvergesToEllipticFunctions) {
   });
 }
 
-// Φ is of degree 2, forces are linear, the spring has a discrete gradient: to Newton's accuracy.
+// Φ is of degree 2, forces are linear, and the spring has a discrete gradient; therefore energy is
+// conserved to the accuracy of Newton's method.
 TEST(PhysicalPendulum, KeepsItsEnergyInTheEnergyMomentumScheme) {
   const PhysicalPendulum p;
   for (const bool spring : {false, true}) {
     Workspace model = p.model();
     if (spring)
-      model.add_link(make_spring("spring", {.point = {1, 0.5}},
-                                 {.body = "body", .point = {0.4, 0.1}}, {60, 0, 0.4}));
+      model.add_force_element(make_spring("spring", {.point = {1, 0.5}},
+                                          {.body = "body", .point = {0.4, 0.1}}, {60, 0, 0.4}));
     State x = p.start(model);
     EnergyMomentum scheme(model, {});
     scheme.make_consistent(x);
@@ -123,20 +125,20 @@ TEST(PhysicalPendulum, KeepsItsEnergyInTheEnergyMomentumScheme) {
   }
 }
 
-// A motor against a damper and a spring whose end is shaken, all energy counted: the defect of the
-// balance is that of the trapezoidal rule over the powers and of the scheme.
+// A motor acts against a damper and a spring with an oscillating end, and all energy is counted:
+// the energy error is that of the trapezoidal rule over the powers and of the scheme.
 TEST(EnergyBalance, CountsDampersAndMotors) {
-  const auto defect = [](double h) {
+  const auto energy_error = [](double h) {
     Workspace model;
     testing::add_rigid(model, "rotor", {3, {0.4, -0.1}, 0.2}, Vec2(0, -kGravity));
     model.add_joint(make_revolute("axis", {}, {.body = "rotor"}));
-    model.add_link(make_torque("motor", {.body = "rotor"}, 8));
-    model.add_link(make_torsion_spring("brake", {}, {.body = "rotor"}, {0, 0.7, 0}));
+    model.add_force_element(make_torque("motor", {.body = "rotor"}, 8));
+    model.add_force_element(make_torsion_spring("brake", {}, {.body = "rotor"}, {0, 0.7, 0}));
     const auto shaken = [](double t) {
       return Motion{0.1 * std::sin(9 * t), 0.9 * std::cos(9 * t), -8.1 * std::sin(9 * t)};
     };
-    model.add_link(make_spring("spring", {.point = {1, 0.3}, .along = shaken},
-                               {.body = "rotor", .point = {0.2, 0.2}}, {40, 2, 0.3}));
+    model.add_force_element(make_spring("spring", {.point = {1, 0.3}, .along = shaken},
+                                        {.body = "rotor", .point = {0.2, 0.2}}, {40, 2, 0.3}));
     MotionSettings settings;
     settings.end = 2;
     settings.step = h;
@@ -145,15 +147,16 @@ TEST(EnergyBalance, CountsDampersAndMotors) {
     const MotionResult result = integrate(
         model, {}, settings, [&](const MotionStep& s) { work = std::max(work, std::abs(s.work)); });
     EXPECT_GT(work, 1);
-    return result.energy_defect;
+    return result.energy_error;
   };
-  const auto rate = testing::fit_rate({4e-3, 2e-3, 1e-3}, defect);
+  const auto rate = testing::fit_rate({4e-3, 2e-3, 1e-3}, energy_error);
   std::cout << "defect of the energy balance\n" << rate.table();
   EXPECT_NEAR(rate.order(), 2, 0.2) << rate.table();
   EXPECT_LT(rate.error.back(), 1e-4) << rate.table();
 }
 
-/// A crank that speeds up, its rod, and a block that slides on a line beside the crank's axis.
+/// A crank with growing speed, its rod, and a block that slides on a line offset from the crank's
+/// axis.
 struct SliderCrank {
   double crank = 0.15, rod = 0.4, offset = 0.03;
   RigidSection crank_section{1.2, {0.06, 0.01}, 0.004}, rod_section{0.8, {0.21, -0.02}, 0.011},
@@ -163,13 +166,13 @@ struct SliderCrank {
   double rod_angle(double t) const {
     return std::asin((offset - crank * std::sin(drive(t).value)) / rod);
   }
-  /// Points r of rod and block, and the angle of the rod (5).
+  /// Returns the points r of rod and block, and the angle of the rod (5).
   Eigen::Vector<double, 5> kinematics(double t) const {
     const double a = drive(t).value, b = rod_angle(t);
     return {crank * std::cos(a), crank * std::sin(a), crank * std::cos(a) + rod * std::cos(b),
             offset, b};
   }
-  /// Total energy of the mechanism in the closed form.
+  /// Returns the total energy of the mechanism in the closed form.
   double energy(double t) const {
     const auto at = [&](double dt) { return kinematics(t + dt); };
     const Eigen::Vector<double, 5> x = at(0), rate = testing::first_difference(at, 1e-3);
@@ -212,7 +215,8 @@ struct SliderCrank {
   }
 };
 
-// Positions follow from the joints alone: exact. The drive's moment is its power over its speed.
+// Positions follow from the joints alone and are exact. The moment of the drive is its power
+// divided by its speed.
 TEST(SliderCrank, FollowsItsClosedFormKinematics) {
   const SliderCrank s;
   const double end = 1.7;
@@ -236,16 +240,17 @@ TEST(SliderCrank, FollowsItsClosedFormKinematics) {
   }
 }
 
-/// x(t) of  m ẍ + c ẋ + k x = 0  from x(0) = x₀ at rest, and its rate.
+/// Returns x(t) of  m ẍ + c ẋ + k x = 0  from x(0) = x₀ at rest, and its rate.
 Motion decaying(double mass, double damping, double stiffness, double start, double t) {
   const double delta = damping / (2 * mass);
-  const double pulsation = std::sqrt(stiffness / mass - delta * delta);
-  const double c = std::cos(pulsation * t), s = std::sin(pulsation * t), e = std::exp(-delta * t);
-  return {start * e * (c + delta / pulsation * s),
-          -start * e * (pulsation + delta * delta / pulsation) * s, 0};
+  const double angular_frequency = std::sqrt(stiffness / mass - delta * delta);
+  const double c = std::cos(angular_frequency * t), s = std::sin(angular_frequency * t),
+               e = std::exp(-delta * t);
+  return {start * e * (c + delta / angular_frequency * s),
+          -start * e * (angular_frequency + delta * delta / angular_frequency) * s, 0};
 }
 
-// A block on an inclined guide between spring and ground; the guide carries m g cos.
+// A block is on an inclined guide, with a spring to the ground; the force of the guide is m g cos.
 TEST(Spring, MakesAnOscillator) {
   const double mass = 2, stiffness = 80, slope = 0.5, end = 2;
   const Vec2 along(std::cos(slope), std::sin(slope)), gravity(0, -kGravity);
@@ -256,32 +261,34 @@ TEST(Spring, MakesAnOscillator) {
       testing::add_rigid(model, "block", {mass, {0, 0}, 0.1}, gravity);
       model.add_joint(
           make_slider("guide", {.point = {0.2, 0.1}, .angle = slope}, {.body = "block"}));
-      model.add_link(make_spring("spring", {.point = {0.2, 0.1}}, {.body = "block"},
-                                 {stiffness, damping, 0.6}));
+      model.add_force_element(make_spring("spring", {.point = {0.2, 0.1}}, {.body = "block"},
+                                          {stiffness, damping, 0.6}));
       State x = model.reference();
       testing::put(model, "block", {Vec2(0.2, 0.1) + (rest + 0.2) * along, slope}, x);
       advance(model, x, end, h);
       const Motion exact = decaying(mass, damping, stiffness, 0.2, end);
-      // Newton's tolerance of 1e-14 · 0.2 m, times m / (β h²), is 2e-8 N.
+      // The tolerance of Newton's method, 1e-14 · 0.2 m, times m / (β h²), is 2e-8 N.
       const Vec2 across(-along.y(), along.x());
       const Vec3 guide = model.joint_wrench(1, "block", Vec3::Zero(), x).force;
       EXPECT_LT((Vec2(guide.head<2>()) - mass * kGravity * std::cos(slope) * across).norm(), 1e-7);
       return Errors{std::abs((x.q.head<2>() - Vec2(0.2, 0.1)).dot(along) - rest - exact.value),
                     std::abs(x.v.head<2>().dot(along) - exact.rate),
-                    // The guide's force is constant: the spring's energy in place of a multiplier.
+                    // The force of the guide is constant; therefore the spring's energy replaces a
+                    // multiplier.
                     std::abs(model.energies(x).strain -
                              0.5 * stiffness * std::pow(rest - 0.6 + exact.value, 2))};
     });
 }
 
-// Wound up by several turns it comes back by as many: A sin t of A = 5 and 40, in every scheme.
+// A spring wound up by several turns must unwind by the same angle: A sin t with A = 5 and 40, in
+// both schemes.
 TEST(TorsionSpring, CountsTurns) {
   for (const char* scheme : {"generalized_alpha", "minimal_coordinates"})
     for (const double rate : {5.0, 40.0}) {
       Workspace model;
       testing::add_rigid(model, "rotor", {1, {0, 0}, 1});
       model.add_joint(make_revolute("axis", {}, {.body = "rotor"}));
-      model.add_link(make_torsion_spring("spring", {}, {.body = "rotor"}, {1, 0, 0}));
+      model.add_force_element(make_torsion_spring("spring", {}, {.body = "rotor"}, {1, 0, 0}));
       State x = model.reference();
       testing::put(model, "rotor", {.angle_rate = rate}, x);
       IntegratorSettings settings;
@@ -295,32 +302,33 @@ TEST(TorsionSpring, CountsTurns) {
         most = std::max(most, std::abs(e.kinetic + e.strain - 0.5 * rate * rate));
       }
       ASSERT_EQ(x.turned.size(), 1);
-      // A step of h turns a body by about (h theta')^2/12 too little, with rho 0.8 up to three
-      // times that (coordinates are the axes); the way there and back is the integral of rate |cos
-      // t|.
+      // A step h rotates a body by about (h theta')^2/12 too little, for rho 0.8 by up to three
+      // times that (the coordinates are the axes); the path there and back is the integral of rate
+      // |cos t|.
       const double part = std::pow(1e-3 * rate, 2), way = rate * (4 + std::sin(6.0));
       EXPECT_NEAR(x.turned[0], rate * std::sin(6.0), 3 * part / 12 * way) << scheme;
       EXPECT_LT(most, part * 0.5 * rate * rate) << scheme;
     }
 }
 
-// A rest angle that lies more than half a turn away is reached the whole way: rest (1 - cos t).
+// A rest angle more than half a turn away is approached over the whole angle: rest (1 - cos t).
 TEST(TorsionSpring, GoesTheWholeWayToItsRest) {
   Workspace model;
   testing::add_rigid(model, "rotor", {1, {0, 0}, 1});
   model.add_joint(make_revolute("axis", {}, {.body = "rotor"}));
-  model.add_link(make_torsion_spring("spring", {}, {.body = "rotor"}, {1, 0, 4.0, 0.0}));
+  model.add_force_element(make_torsion_spring("spring", {}, {.body = "rotor"}, {1, 0, 4.0, 0.0}));
   State x = model.reference();
   testing::put(model, "rotor", {}, x);
   EXPECT_NEAR(model.energies(x).strain, 8, 1e-14);
   advance(model, x, 2.5, 1e-3);
   const double way = 4 * (1 - std::cos(2.5));
-  EXPECT_NEAR(x.turned[0], way, 3 * std::pow(4e-3, 2) / 12 * way);  // as above, theta' <= 4
+  // the tolerance is that of CountsTurns with theta' <= 4
+  EXPECT_NEAR(x.turned[0], way, 3 * std::pow(4e-3, 2) / 12 * way);
 }
 
 TEST(TorsionSpring, MakesAnOscillator) {
   const RigidSection section{3, {0.2, 0.1}, 0.4};
-  const double stiffness = 30, rest = 2.9, end = 2;  // swings across the cut at π
+  const double stiffness = 30, rest = 2.9, end = 2;  // the motion passes the branch cut at π
   const double inertia = section.inertia + section.mass * section.center.squaredNorm();
   for (const double damping : {0.0, 0.8})
     expect_order_two(
@@ -329,14 +337,14 @@ TEST(TorsionSpring, MakesAnOscillator) {
           Workspace model;
           testing::add_rigid(model, "rotor", section);
           model.add_joint(make_revolute("axis", {}, {.body = "rotor"}));
-          model.add_link(make_torsion_spring("spring", {.angle = 0.3},
-                                             {.body = "rotor", .angle = -0.2},
-                                             {stiffness, damping, rest}));
+          model.add_force_element(make_torsion_spring("spring", {.angle = 0.3},
+                                                      {.body = "rotor", .angle = -0.2},
+                                                      {stiffness, damping, rest}));
           State x = model.reference();
           testing::put(model, "rotor", {{0, 0}, rest + 0.5 + 0.9}, x);
           advance(model, x, end, h);
           const Motion exact = decaying(inertia, damping, stiffness, 0.9, end);
-          // Away from its axis the centre needs a force to stay on its circle.
+          // The centre is not on the axis and needs a force to stay on its circle.
           const Vec2 arm = Eigen::Rotation2Dd(rest + 0.5 + exact.value) * section.center;
           const double spin = (-stiffness * exact.value - damping * exact.rate) / inertia;
           const Vec2 reaction =

@@ -1,10 +1,10 @@
-// A slider-crank with a spring and a damper whose sensitivities are published: what its kinetic
-// energy integrates to over ten seconds, and the derivatives of that by stiffness and damping, from
-// the adjoint of a motion of rigid bodies and joints.
+// Shows the published sensitivities of a slider-crank with a spring and a damper: the integral of
+// its kinetic energy over ten seconds, and its derivatives by stiffness and damping, from the
+// adjoint of a motion of rigid bodies and joints.
 //
 // Data and published numbers: example idasSlCrank_FSA_dns of SUNDIALS' IDAS, Hindmarsh et al.
-// (2005). There angles and the slider's place are the unknowns of an index-2 form, and derivatives
-// come from forward sensitivity equations.
+// (2005). There angles and the slider's position are the unknowns of an index-2 form, and
+// derivatives come from forward sensitivity equations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,21 +25,21 @@ constexpr double kCrankInertia = 1;  // about the origin [kg m²]
 constexpr double kSlider = 1;        // [kg]
 constexpr double kRodInertia = 2;    // [kg m²]; the rod has no mass
 constexpr double kFreeLength = 1;    // of the spring between the middles of both links [m]
-constexpr double kForce = 1;         // does work on x + cos p [N]
+constexpr double kForce = 1;         // works on x + cos p [N]
 constexpr double kEnd = 10;          // from rest at q = π/2 [s]
 constexpr double kStiffness = 1;     // [N/m]
 constexpr double kDamping = 1;       // [N s/m]
 constexpr double kPublished[] = {3.3366157997761721, 0.33346, -0.36375};  // G, dG/dk, dG/dc
 
-/// The kinetic energy of a model.
+/// The kinetic energy of a model as an objective.
 class KineticEnergy final : public MotionMeasure {
  public:
   double value(Workspace& model, const State& x) const override {
     return model.energies(x).kinetic;
   }
-  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
-                  std::vector<FactorSlopes>&) const override {
-    // M q̇: what accelerations of that size add to the forces.
+  void add_gradient(Workspace& model, const State& x, double weight, StateGradient& by_state,
+                    std::vector<ScaleFactorGradient>&) const override {
+    // M q̇ is the change of the forces by accelerations of that size.
     State at = x;
     VectorXd with, without;
     at.a = x.v;
@@ -68,11 +68,12 @@ struct SliderCrank {
                                      },
                                      {1}));
     add_spring(model, {stiffness, damping, kFreeLength});
-    // δ(x + cos p): the point of the rod's frame that mirrors the pin.
-    model.add_link(make_point_force("force", {.body = "rod", .point = {1, 0}}, Vec2(kForce, 0)));
+    // The force works on δ(x + cos p), the point of the rod's frame opposite to the pin.
+    model.add_force_element(
+        make_point_force("force", {.body = "rod", .point = {1, 0}}, Vec2(kForce, 0)));
     const double q = std::numbers::pi / 2, p = std::asin(-kCrank * std::sin(q));
-    settings.placement = [=](double) {
-      return std::vector<Placed>{
+    settings.body_poses = [=](double) {
+      return std::vector<BodyPose>{
           {"crank", {.angle = q}},
           {"rod", {.origin = {std::cos(p) + kCrank * std::cos(q), 0}, .angle = p}}};
     };
@@ -83,9 +84,9 @@ struct SliderCrank {
     objectives = {{std::make_shared<KineticEnergy>(), MotionObjective::Times::steps, 1}};
   }
 
-  /// G: objectives are means over time.
+  /// Returns G; objectives are means over time.
   double value() const { return kEnd * motion_values(model, {}, settings, objectives).at(0); }
-  /// (G, dG/dk, dG/dc)
+  /// Returns (G, dG/dk, dG/dc).
   Vec3 gradient() const {
     const MotionGradient found =
         motion_gradients(
@@ -98,28 +99,29 @@ struct SliderCrank {
 
  private:
   static void add_spring(Model& to, const SpringData& data) {
-    to.add_link(make_spring("spring", {.body = "crank", .point = {kCrank / 2, 0}},
-                            {.body = "rod", .point = {-0.5, 0}}, data));
+    to.add_force_element(make_spring("spring", {.body = "crank", .point = {kCrank / 2, 0}},
+                                     {.body = "rod", .point = {-0.5, 0}}, data));
   }
-  /// Its force is linear in k and in c: the derivative is the force of a spring of one.
+  /// Returns the derivative by one coefficient: the force is linear in k and in c, so that it is
+  /// the force of a spring with this coefficient equal to one.
   ForceSlope by_spring(const SpringData& one) const {
     Model alone = model;
     add_spring(alone, one);
     return [alone, n = alone.n_dofs()](const State& x, const VectorXd& psi) {
       VectorXd force = VectorXd::Zero(n);
-      alone.links().back()->add_force(x, force);
+      alone.force_elements().back()->add_force(x, force);
       return force.dot(psi);
     };
   }
 };
 
-/// The same mechanism by the angle of its crank alone,
+/// Returns G of the mechanism described by the angle of its crank alone,
 ///
 ///   I(q) q̈ + ½ I'(q) q̇² = Q,   I = J₁ + m₂ x'² + J₂ p'²,   Q = F (x' - sin p p') - N l',
 ///   N = k (l - l₀) + c l' q̇
 ///
-/// with G by the classical Runge-Kutta method. T: complex numbers, so that an imaginary part of k
-/// or c becomes the derivative.
+/// by the classical Runge-Kutta method. T may be a complex type, so that an imaginary part of k or
+/// c gives the derivative.
 template <class T>
 T energy_by_crank_angle(T k, T c, int n_steps) {
   using Three = Eigen::Matrix<T, 3, 1>;  // q, q̇, G
@@ -148,7 +150,7 @@ T energy_by_crank_angle(T k, T c, int n_steps) {
   return y[2];
 }
 
-/// (G, dG/dk, dG/dc)
+/// Returns (G, dG/dk, dG/dc).
 Vec3 by_crank_angle() {
   using Complex = std::complex<double>;
   constexpr double kSmall = 1e-30;
@@ -157,8 +159,9 @@ Vec3 by_crank_angle() {
   return {by_k.real(), by_k.imag() / kSmall, by_c.imag() / kSmall};
 }
 
-// Errors of a step h are even in it, but for those of the start: two steps together leave 1e-8. The
-// published G is 2.7e-6 off, as its tolerances of 1e-6 allow, its derivatives have five digits.
+// Errors of a step h are even in it, except for those of the start: extrapolation from two steps
+// leaves 1e-8. The error of the published G is 2.7e-6, as its tolerances of 1e-6 permit; its
+// derivatives have five digits.
 TEST(SliderCrank, HasThePublishedSensitivities) {
   const Vec3 exact = by_crank_angle();
   const Vec3 coarse = SliderCrank(kStiffness, kDamping, 1.0 / 400).gradient(),
@@ -170,14 +173,14 @@ TEST(SliderCrank, HasThePublishedSensitivities) {
   }
 }
 
-// The adjoint derives the steps that were made, however long they are; also with links that follow
-// turns: the crank goes round.
+// The adjoint is the derivative of the steps that were made, for any step size, also with force
+// elements that count turns: the crank makes full revolutions.
 TEST(SliderCrank, HasTheGradientThatDifferencesSay) {
   const auto make = [](double k, double c) {
     SliderCrank out(k, c, 0.02);
-    out.model.add_link(make_torsion_spring("torsion", {}, {.body = "crank"},
-                                           {.stiffness = 0.05, .damping = 0.1, .rest_angle = 1.5}));
-    out.model.add_link(make_torque("motor", {.body = "crank"}, 2));
+    out.model.add_force_element(make_torsion_spring(
+        "torsion", {}, {.body = "crank"}, {.stiffness = 0.05, .damping = 0.1, .rest_angle = 1.5}));
+    out.model.add_force_element(make_torque("motor", {.body = "crank"}, 2));
     return out;
   };
   SliderCrank moved = make(kStiffness, kDamping);

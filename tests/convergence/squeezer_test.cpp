@@ -1,10 +1,10 @@
-// Andrews' squeezing mechanism: seven rigid bodies with one degree of freedom, driven by a motor
-// against a spring. A published benchmark with a reference solution: generalized-alpha converges to
-// it with order 2.
+// Shows that Andrews' squeezing mechanism, seven rigid bodies with one degree of freedom, driven by
+// a motor against a spring, converges with order 2 of generalized-alpha to a published reference
+// solution.
 //
 // Data and reference: Hairer & Wanner (1996), Solving Ordinary Differential Equations II, VII.7,
-// and the Test Set for IVP Solvers (Mazzia & Magherini 2008), problem "andrews". Angles there are
-// relative in part: here every body has its own frame.
+// and the Test Set for IVP Solvers (Mazzia & Magherini 2008), problem "andrews". Some of the angles
+// there are relative: here every body has its own frame.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -25,7 +25,7 @@ namespace {
 struct Angles {
   double beta, theta, gamma, phi, delta, omega, epsilon;
 
-  /// Angles of the frames of bodies 1 to 7.
+  /// Returns the angles of the frames of bodies 1 to 7.
   std::array<double, 7> frames() const {
     return {beta, beta + theta, gamma, phi + delta, delta, omega + epsilon, epsilon};
   }
@@ -46,11 +46,11 @@ constexpr double kRr = 0.007, kRa = 0.00092, kD = 0.028, kDa = 0.0115, kE = 0.02
                  kTb = 0.00916;
 
 std::string name(int body) { return std::string("K").append(std::to_string(body)); }
-MarkerPlace on(int body, const Vec2& point = {0, 0}) {
+MarkerLocation on(int body, const Vec2& point = {0, 0}) {
   return {.body = name(body), .point = point};
 }
 
-/// Points of the bodies in their frames: F is where bodies 2, 3, 4 and 6 meet.
+/// Points of the bodies in their frames: bodies 2, 3, 4 and 6 meet in F.
 const Vec2 kF2(-kD, 0), kF3(0, -kSs), kF4(0, -kE), kF6(kZf, 0), kD3(kSd, -kSc), kE5(kZt, 0),
     kH7(0, -kU);
 
@@ -72,8 +72,8 @@ Workspace squeezer() {
   model.add_joint(make_revolute("F3", on(2, kF2), on(3, kF3)));
   model.add_joint(make_revolute("F4", on(2, kF2), on(4, kF4)));
   model.add_joint(make_revolute("F6", on(2, kF2), on(6, kF6)));
-  model.add_link(make_torque("motor", on(1), 0.033));
-  model.add_link(make_spring("spring", {.point = kC}, on(3, kD3), {4530, 0, 0.07785}));
+  model.add_force_element(make_torque("motor", on(1), 0.033));
+  model.add_force_element(make_spring("spring", {.point = kC}, on(3, kD3), {4530, 0, 0.07785}));
   return model;
 }
 
@@ -92,7 +92,7 @@ State start(const Model& model) {
 
 constexpr double kEndTime = 0.03;
 
-/// Errors of the seven angles at the end, up to full turns.
+/// Returns the errors of the seven angles at the end, up to full turns.
 VectorXd errors_of(const Model& model, const State& x) {
   VectorXd out(7);
   for (int k = 1; k <= 7; ++k)
@@ -114,7 +114,7 @@ VectorXd errors(double h) {
   return errors_of(model, x);
 }
 
-// The published start fits the joints, and has the published accelerations.
+// The published start satisfies the joints and has the published accelerations.
 TEST(Squeezer, StartsAsPublished) {
   Workspace model = squeezer();
   State x = start(model);
@@ -123,18 +123,18 @@ TEST(Squeezer, StartsAsPublished) {
   EXPECT_LT(c.value.cwiseAbs().maxCoeff(), 1e-15);
   GeneralizedAlpha alpha(model, {});
   alpha.make_consistent(x);
-  const auto spin = [&](int body) {  // at rest: u × ü
+  const auto spin = [&](int body) {  // without velocity: u × ü
     const int at = model.body(name(body)).first_dof;
     return x.q[at + 2] * x.a[at + 3] - x.q[at + 3] * x.a[at + 2];
   };
   EXPECT_NEAR(spin(1) / 14222.4439199541138705911625887, 1, 1e-12);
   EXPECT_NEAR((spin(2) - spin(1)) / -10666.8329399655854029433719415, 1, 1e-12);
-  // At rest at a dead centre: nothing behind F accelerates.
+  // The mechanism starts at rest at a dead centre: no body behind F accelerates.
   for (const int body : {3, 4, 5, 6, 7}) EXPECT_NEAR(spin(body), 0, 1e-8);
 }
 
-// Order 2; with that term of the error extrapolated away, eight digits of the published angles (of
-// up to 15.8 rad) come out, as far as Newton's tolerance lets them.
+// The order is 2. If this term of the error is extrapolated, eight digits of the published angles
+// (of up to 15.8 rad) are reproduced, as far as the tolerance of Newton's method permits.
 TEST(Squeezer, ConvergesToThePublishedSolution) {
   std::vector<VectorXd> e;
   const auto rate = testing::fit_rate({1e-5, 5e-6, 2.5e-6}, [&](double h) {
@@ -146,8 +146,8 @@ TEST(Squeezer, ConvergesToThePublishedSolution) {
   EXPECT_LT(((4 * e[2] - e[1]) / 3).lpNorm<Eigen::Infinity>(), 5e-8);
 }
 
-// The explicit way through its dead centres and six turns of the crank: the error follows the
-// tolerance down to what the published digits and the growth of round-off leave.
+// The explicit method passes the dead centres and six turns of the crank. Its error follows the
+// tolerance down to the accuracy of the published digits and the accumulated round-off.
 TEST(Squeezer, FollowsThePublishedSolutionInMinimalCoordinates) {
   std::vector<double> error;
   for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12}) {

@@ -4,7 +4,7 @@
 #include "cases/scene/elements/row.h"
 #include "fem/elements/ancf_plate.h"
 
-/// An element, whole: a plate whose elements are shorter towards both ends.
+/// Complete example of an element: a plate whose elements are shorter towards both ends.
 namespace flexmorph::cases {
 namespace {
 
@@ -21,7 +21,7 @@ std::unique_ptr<fem::Element> make(const Body& body, double, const std::array<in
 
 extern const ElementRow kAncfPlate, kGradedPlate;
 const ElementRow kGradedPlate = [] {
-  ElementRow row = kAncfPlate;  // reads, is drawn and counted like it
+  ElementRow row = kAncfPlate;  // is read, drawn and counted as kAncfPlate
   row.name = "graded_plate";
   row.sentence = "A plate with shorter elements at both ends.";
   row.make = make;

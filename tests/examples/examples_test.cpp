@@ -1,7 +1,7 @@
-// Shows that the examples of tests/README.md, "What a new part touches", do what they say: an
-// element fills its plate, the energy of a term is that of a hand calculation, the row of a joint
-// and its rate are those of its angles, an optimizer comes to the nearest point of a box, a ladder
-// reads its case. The response stands beside all others in optim/mmc_responses_test.cpp.
+// Shows that the examples of tests/README.md, "What a new part touches", work: an element fills its
+// plate, the energy of a term agrees with a hand calculation, the constraint of a joint and its
+// rate follow from the angles, an optimizer finds the nearest point of a box, a refinement series
+// reads its case. The example of a response is tested in optim/mmc_responses_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "cases/accuracy/parameters.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
-#include "fem/dynamics/mesh_changes/growth.h"
+#include "fem/dynamics/mesh_changes/moving_root.h"
 #include "fem/elements/ancf_plate.h"
 #include "fem/solve/statics.h"
 #include "fem/terms.h"
@@ -45,7 +45,7 @@ TEST(Examples, AnElementOfItsOwnFillsItsPlate) {
   double area = 0;
   fem::ShapeTable points;
   for (int e = 0; e < element->n_elements(); ++e) {
-    element->tabulate(e, 2, fem::Tabulate::position, {}, fem::FactorKind::none, points);
+    element->tabulate(e, 2, fem::Tabulate::position, {}, fem::ScaleFactorKind::none, points);
     area += points.weight.sum();
   }
   EXPECT_NEAR(area, 1.0, 1e-14);
@@ -56,7 +56,7 @@ TEST(Examples, ATermOfItsOwnHasTheEnergyOfAStretchedSheet) {
   const fem::AncfPlate sheet(2, fem::AncfPlate::ShapeSet::h16, m, n);
   const fem::TermRow& row = fem::cords_row();
   const auto term = row.make({{0.01, 1e8, 0.3, 2700}, {{"cord_stiffness", 700}}, {&row}});
-  const fem::Factors uniform;
+  const fem::ScaleFactors uniform;
   term->prepare(sheet, uniform, true);
   const double stretch = 1.1, strain = 0.5 * (stretch * stretch - 1);
   MatrixXd q = sheet.reference();
@@ -73,8 +73,8 @@ TEST(Examples, ATermOfItsOwnHasTheEnergyOfAStretchedSheet) {
   EXPECT_NEAR(energy, 0.5 * 700 * strain * strain * 0.08, 1e-13);
 }
 
-// A sheet with cords turns slowly with a hub: u = ρ h ω² L³ / 3 (E h + k), to the first order in
-// the strain.
+// A sheet with cords rotates slowly with a hub. Reference: u = ρ h ω² L³ / 3 (E h + k), to first
+// order in the strain.
 TEST(Examples, ASheetWithATermOfItsOwnTurnsLikeARod) {
   const fem::PlaneSection section{0.01, 1e8, 0, 2700};
   const double length = 0.6, width = 0.1, cords = 5e5, omega = 0.1;
@@ -123,7 +123,7 @@ TEST(Examples, AJointOfItsOwnSeesTheAnglesOfItsBodies) {
   EXPECT_NEAR(rate, std::cos(between) * (rate_b - rate_a), 1e-15);
 }
 
-/// The point of a box that is nearest to another, with a straight limit: x0 + x1 <= 1.
+/// The point of a box nearest to another point, with a linear constraint: x0 + x1 <= 1.
 class Nearest final : public optim::Problem {
  public:
   int n_variables() const override { return 2; }
@@ -131,9 +131,9 @@ class Nearest final : public optim::Problem {
   VectorXd lower() const override { return VectorXd::Zero(2); }
   VectorXd upper() const override { return VectorXd::Ones(2); }
   VectorXd start() const override { return VectorXd::Constant(2, 0.3); }
-  optim::Response evaluate(const VectorXd& x) override {
+  optim::ProblemValues evaluate(const VectorXd& x) override {
     const Vec2 off = x - Vec2(0.2, -0.5);
-    optim::Response r;
+    optim::ProblemValues r;
     r.f = off.squaredNorm();
     r.df = 2 * off;
     r.g = VectorXd::Constant(1, x.sum() - 1);

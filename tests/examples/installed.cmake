@@ -1,7 +1,9 @@
-# Installs a build and moves it. The program finds the cases it came with; the examples, built against
-# the installed tree, static and shared, find them, too, and come to what the program comes to:
+# Shows that an installed and moved build works: the program finds its cases; the examples, built
+# against the installed tree, static and shared, find them, too, and compute the value of the
+# program:
 #   cmake -DBUILD=... -DWORK=... -DARGUMENTS=... -P installed.cmake
-# BUILD: of Flexmorph. WORK: a folder for this alone. ARGUMENTS: of the examples' first cmake.
+# BUILD: build folder of Flexmorph. WORK: a folder for this test only. ARGUMENTS: arguments of the
+# examples' first cmake.
 file(REMOVE_RECURSE "${WORK}")
 set(stop COMMAND_ERROR_IS_FATAL ANY)
 foreach(component program library development)
@@ -9,7 +11,7 @@ foreach(component program library development)
                           --prefix "${WORK}/tree" OUTPUT_QUIET ${stop})
 endforeach()
 file(RENAME "${WORK}/tree" "${WORK}/moved")
-# Under a name that the source tree does not have.
+# The case gets a name that does not exist in the source tree.
 file(RENAME "${WORK}/moved/share/flexmorph/cases/plate_pendulum.toml"
             "${WORK}/moved/share/flexmorph/cases/a_moved_pendulum.toml")
 set(moved "a_moved_pendulum")
@@ -36,7 +38,7 @@ foreach(kind static shared)
   execute_process(COMMAND ${CMAKE_COMMAND} --build "${build}" OUTPUT_QUIET ${stop})
   execute_process(COMMAND "${build}/compose" "${WORK}/boom-${kind}" ${stop})
   execute_process(COMMAND "${build}/own_parts" ${stop})
-  # The case beside a static program is said by its path; a shared library finds it.
+  # A static program needs the path of the case; a shared library finds the case by its name.
   set(case ${moved})
   if(kind STREQUAL static)
     set(case "${WORK}/moved/share/flexmorph/cases/${moved}.toml")

@@ -2,7 +2,7 @@
 #include "cases/scene/joints/row.h"
 #include "fem/joints/pair_joint.h"
 
-/// A joint, whole: axes of two bodies stay parallel.
+/// Complete example of a joint: the axes of two bodies stay parallel.
 namespace flexmorph::cases {
 namespace {
 

@@ -1,12 +1,12 @@
 #include "optim/makers.h"
 #include "optim/search.h"
 
-/// An optimizer, whole: steepest descent of the objective and of limits that do not hold, into the
-/// bounds; half the step where a design is refused or worse.
+/// Complete example of an optimizer: steepest descent of the objective plus violated constraints,
+/// projected onto the bounds; the step is halved if a design is refused or worse.
 namespace flexmorph::optim {
 namespace {
 
-double merit(const Response& r) { return r.f + 10 * r.g.cwiseMax(0).sum(); }
+double objective(const ProblemValues& r) { return r.f + 10 * r.g.cwiseMax(0).sum(); }
 
 class SteepestDescent final : public Optimizer {
  public:
@@ -24,7 +24,7 @@ class SteepestDescent final : public Optimizer {
       const double steepest = std::max(slope.cwiseAbs().maxCoeff(), 1e-300);
       next.x = (at.x - step / steepest * slope).cwiseMax(search.lower()).cwiseMin(search.upper());
       if (search.evaluate(next.x, next.response) == Trial::taken &&
-          merit(next.response) < merit(at.response))
+          objective(next.response) < objective(at.response))
         at = next;
       else
         step *= 0.5;

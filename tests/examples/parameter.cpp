@@ -2,7 +2,8 @@
 #include "io/case_files/case_file.h"
 #include "io/files.h"
 
-/// A parameter of `flexmorph accuracy`: how slowly hubs take up their speed.
+/// Complete example of a parameter of `flexmorph accuracy`: the time in which hubs reach their
+/// angular velocity.
 namespace flexmorph::cases {
 namespace {
 

@@ -1,6 +1,7 @@
 #include "optim/mmc/problem/response.h"
 
-/// A response, whole: the first moment of the material about the left edge, as objective or limit.
+/// Complete example of a response: the first moment of the material about the left edge, as
+/// objective or limit.
 namespace flexmorph::mmc {
 namespace {
 
@@ -12,13 +13,13 @@ class FirstMoment final : public Response {
     for (int i = 0; i < g.nx; ++i)
       for (int j = 0; j < g.ny; ++j) arm_(g.cell(i, j)) = full * (g.cell_center(i, j).x() - g.x0);
   }
-  void evaluate(const Seen& at, Values& out) override {
+  void evaluate(const DesignView& at, Values& out) override {
     out.f = arm_ * at.factors.mass;
     out.d_mass = arm_;
   }
 
  private:
-  MatrixXd arm_;  // [kg m] per mass factor
+  MatrixXd arm_;  // [kg m] per scale factor of the mass
 };
 
 }  // namespace

@@ -2,14 +2,14 @@
 #include "fem/terms/density_term.h"
 #include "fem/terms/sampling.h"
 
-/// A term, whole: cords that lie in a plate along its length, W = ½ k ε_mm².
+/// Complete example of a term: cords in a plate along its length, W = ½ k ε_mm².
 namespace flexmorph::fem {
 
 const TermRow& cords_row() {
   static const TermRow kRow{.name = "cords",
                             .sentence = "Cords along the plate, in its surface.",
                             .role = "cords",
-                            .places = {TermPlace::plane, TermPlace::space},
+                            .domains = {TermDomain::plane, TermDomain::space},
                             .required_in = {},
                             .keys = {{.name = "cord_stiffness",
                                       .noun = "a stiffness of cords",

@@ -1,6 +1,7 @@
-// Shows that the beam's shape functions are those of T and integrate to the matrices that T prints,
-// against exact rational integrals: (A.3), (A.4), (A.5), (A.7), (A.10), (32), (35), (36). And that
-// a curved, tapered or sheared reference configuration has the right area, inertia and gradients.
+// Shows that the shape functions of the beam are those of paper T and integrate to the matrices
+// printed there, against exact rational integrals: (A.3), (A.4), (A.5), (A.7), (A.10), (32), (35),
+// (36). Shows also that a curved, tapered or sheared reference configuration has the right area,
+// inertia and gradients.
 #include "fem/elements/ancf_beam.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +24,8 @@ namespace {
 
 using testing::error_of;
 using testing::Fraction;
+using testing::mentions;
 using testing::Polynomial;
-using testing::says;
 
 constexpr double kLength = 0.7, kHeight = 0.2;
 const PlaneSection kSection{0.05, 2e8, 0.3, 7200};
@@ -44,7 +45,7 @@ const std::array<Shape, 6>& paper_shapes() {
       Shape{{{{{1, 1}, 1}}}, 0, 1}};
   return shapes;
 }
-/// S_rd = S - S(x_o), x_o = 0: only s₁ is not zero there, and it is one.
+/// Returns S_rd = S - S(x_o) for x_o = 0, where s₁ = 1 and all other shape functions are zero.
 std::array<Shape, 6> relative_shapes() {
   std::array<Shape, 6> out = paper_shapes();
   out[0].p = out[0].p - Polynomial{{{{0, 0}, 1}}};
@@ -58,7 +59,7 @@ Fractions products(const std::array<Shape, 6>& s) {
     for (size_t j = 0; j < 6; ++j) out[i][j] = (s[i].p * s[j].p).integral();
   return out;
 }
-/// Powers of l and h back in place.
+/// Returns the matrix multiplied by the powers of l and h that its entries belong to.
 MatrixXd with_lengths(const Fractions& x, double sign = 1) {
   MatrixXd out(6, 6);
   for (size_t i = 0; i < 6; ++i)
@@ -68,7 +69,7 @@ MatrixXd with_lengths(const Fractions& x, double sign = 1) {
           std::pow(kHeight, sign * (paper_shapes()[i].h + paper_shapes()[j].h));
   return out;
 }
-/// From the upper triangle.
+/// Returns the symmetric matrix with the given upper triangle.
 Fractions symmetric(std::initializer_list<Fraction> rows) {
   Fractions out;
   auto at = rows.begin();
@@ -77,7 +78,7 @@ Fractions symmetric(std::initializer_list<Fraction> rows) {
   return out;
 }
 
-/// T (A.3), over m; without powers of l and h.
+/// Returns the printed mass matrix (A.3) of T divided by m, without powers of l and h.
 Fractions printed_mass() {
   return symmetric({{13, 35}, {11, 210},  0,         {9, 70},   {-13, 420}, 0,  //
                     {1, 105}, 0,          {13, 420}, {-1, 140}, 0,              //
@@ -86,7 +87,7 @@ Fractions printed_mass() {
                     {1, 105}, 0,                                                //
                     {1, 36}});
 }
-/// T (A.7), likewise.
+/// Returns the printed matrix (A.7) of T divided by m, without powers of l and h.
 Fractions printed_relative_mass() {
   return symmetric({{13, 35}, {-13, 420}, 0,         {-13, 35}, {11, 210}, 0,  //
                     {1, 105}, 0,          {13, 420}, {-1, 140}, 0,             //
@@ -95,7 +96,7 @@ Fractions printed_relative_mass() {
                     {1, 105}, 0,                                               //
                     {1, 36}});
 }
-/// T (A.5), times m.
+/// Returns the printed inverse (A.5) of T times m, without powers of l and h.
 Fractions printed_inverse() {
   return symmetric({16,   -120, 0,  -4,  -60, 0,  //
                     1200, 0,    60, 840, 0,       //
@@ -109,14 +110,15 @@ double mass() { return kSection.density * kSection.thickness * kLength * kHeight
 
 ShapeTable table_of(const AncfBeam& beam, int degree, Tabulate what = Tabulate::position) {
   ShapeTable t;
-  beam.tabulate(0, degree, what, {}, FactorKind::mass, t);
+  beam.tabulate(0, degree, what, {}, ScaleFactorKind::mass, t);
   return t;
 }
 
 double difference(const MatrixXd& x, const MatrixXd& expected) {
   return (x - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
 }
-/// With entries made comparable by powers of l and h.
+/// Returns the largest relative difference after scaling all entries to one unit by powers of l and
+/// h.
 double scaled_difference(const MatrixXd& x, const MatrixXd& expected, double sign = 1) {
   VectorXd s(6);
   for (size_t i = 0; i < 6; ++i)
@@ -157,7 +159,7 @@ TEST(AncfBeamMatrices, InverseOfTheMassIsPrintedRight) {
       for (size_t k = 0; k < 6; ++k) sum = sum + m[i][k] * inverse[k][j];
       EXPECT_EQ(sum, Fraction(i == j ? 1 : 0)) << i << " " << j;
     }
-  // The inverse loses digits with the condition of M, 1.5e4 in these units.
+  // The inverse loses digits in proportion to the condition number of M, 1.5e4 in these units.
   EXPECT_LT(scaled_difference(computed_mass().inverse(),
                               with_lengths(printed_inverse(), -1) / mass(), -1),
             1e-11);
@@ -176,7 +178,7 @@ TEST(AncfBeamMatrices, MassOfRelativeMotionIsPrintedRight) {
             1e-13);
 }
 
-// S̄ (A.4), I_x and I_y (36), with the rational numbers as printed.
+// Compares S̄ (A.4), I_x and I_y (36) with the rational numbers printed in T.
 TEST(AncfBeamMatrices, FirstMomentsArePrintedRight) {
   const std::array<Fraction, 6> mean = {Fraction(1, 2), {1, 12}, 0, {1, 2}, {-1, 12}, 0},
                                 of_x = {Fraction(3, 20), {1, 30}, 0, {7, 20}, {-1, 20}, 0},
@@ -207,8 +209,8 @@ TEST(AncfBeamMatrices, FirstMomentsArePrintedRight) {
   }
 }
 
-// (35): M⁻¹ S̄ᵀ = (1 0 0 1 0 0)ᵀ, because M times that translation is S̄ᵀ, (A.10); so
-// I_u = 1 - M⁻¹ S̄ᵀ S(x_o) (32) is one but for its first column, (0 0 0 -1 0 0).
+// (35): M⁻¹ S̄ᵀ = (1 0 0 1 0 0)ᵀ, because M times that translation is S̄ᵀ, (A.10). Therefore I_u =
+// 1 - M⁻¹ S̄ᵀ S(x_o) (32) is the unit matrix except for its first column, (0 0 0 -1 0 0).
 TEST(AncfBeamMatrices, TranslationsAreFoundByTheMass) {
   const Fractions m = products(paper_shapes());
   for (size_t i = 0; i < 6; ++i) EXPECT_EQ(m[i][0] + m[i][3], paper_shapes()[i].p.integral()) << i;
@@ -222,7 +224,7 @@ TEST(AncfBeamMatrices, TranslationsAreFoundByTheMass) {
   MatrixXd expected = MatrixXd::Identity(6, 6);
   expected(0, 0) = 0;
   expected(3, 0) = -1;
-  // Slopes in parts of their scale: 1/l.
+  // Entries of slopes have the scale 1/l.
   EXPECT_LT((I_u - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
@@ -246,7 +248,8 @@ TEST(AncfBeam, ShapesInterpolateNodalValues) {
   EXPECT_EQ(beam.reference().row(6), Eigen::RowVector2d(0.8, 0));
 }
 
-// r_m and r_n are derivatives by X: the chain rule takes them to those by x and y, by differences.
+// r_m and r_n are derivatives by X. Differences of the shape functions along x and y must equal
+// these derivatives times the chain rule.
 TEST(AncfBeam, GradientsAreThoseByTheReferenceCoordinates) {
   const AncfBeam beam = testing::crooked_beam(0.1);
   const MatrixXd X = beam.reference();
@@ -274,13 +277,13 @@ TEST(AncfBeam, GradientsAreThoseByTheReferenceCoordinates) {
   }
 }
 
-/// Sum over all elements of weight · f(X).
+/// Returns the sum over all elements of weight · f(X).
 double integral(const AncfBeam& beam, const std::function<double(const Vec2&)>& f) {
   const MatrixXd X = beam.reference();
   double sum = 0;
   ShapeTable t;
   for (int e = 0; e < beam.n_elements(); ++e) {
-    beam.tabulate(e, 8, Tabulate::position, {}, FactorKind::none, t);
+    beam.tabulate(e, 8, Tabulate::position, {}, ScaleFactorKind::none, t);
     Eigen::Matrix<double, 6, 2> nodal;
     for (int k = 0; k < 6; ++k) nodal.row(k) = X.row(beam.vectors(e)[static_cast<size_t>(k)]);
     const MatrixXd points = t.N * nodal;
@@ -290,10 +293,10 @@ double integral(const AncfBeam& beam, const std::function<double(const Vec2&)>& 
   return sum;
 }
 
-// A thick quarter ring of radius R: area R φ h, second moment about its centre φ (R₊⁴ - R₋⁴)/4,
-// ∫ X dA = ∫∫ r sin θ r dr dθ. The axis meets the arc to order 4; r_y is linear between unit
-// normals an angle φ/n apart, so that the height is cos(φ/2n) in the middle of an element and less
-// by (φ/n)²/12 on the average: order 2 with that constant.
+// A thick quarter ring of radius R has the area R φ h, the second moment about its centre φ (R₊⁴ -
+// R₋⁴)/4, and ∫ X dA = ∫∫ r sin θ r dr dθ. The axis approximates the arc to order 4. r_y is linear
+// between unit normals an angle φ/n apart, so that the height is cos(φ/2n) in the middle of an
+// element and smaller by (φ/n)²/12 on the average: the order is 2 with that constant.
 TEST(AncfBeam, ArcIsASectorOfARing) {
   const double angle = std::numbers::pi / 2, length = 1.2, h = 0.2, radius = length / angle,
                outer = radius + h / 2, inner = radius - h / 2;
@@ -301,7 +304,7 @@ TEST(AncfBeam, ArcIsASectorOfARing) {
   const auto rate = [&](const std::function<double(const Vec2&)>& f, double exact) {
     return testing::fit_rate({0.25, 0.125, 0.0625}, [&](double step) {
       const int n = static_cast<int>(std::lround(1 / step));
-      const AncfBeam arc(even_nodes(length, n), h, arc_reference(length, angle, n));
+      const AncfBeam arc(uniform_nodes(length, n), h, arc_reference(length, angle, n));
       return std::abs(integral(arc, f) / exact - 1);
     });
   };
@@ -317,8 +320,8 @@ TEST(AncfBeam, ArcIsASectorOfARing) {
   EXPECT_NEAR(area.error.back(), std::pow(angle / 16, 2) / 12, 1e-3 * area.error.back());
 }
 
-// The weights of a reference are those of its straight lines and parabolas: the area of a tapered
-// beam is that of a trapezoid, and shear does not change it.
+// The weights are exact for a reference of straight lines: the area of a tapered beam is the area
+// of a trapezoid, and shear does not change it.
 TEST(AncfBeam, TaperedAndShearedAreasAreExact) {
   const std::vector<double> x = {0, 0.5, 1};
   std::vector<BeamNode> nodes;
@@ -330,16 +333,20 @@ TEST(AncfBeam, TaperedAndShearedAreasAreExact) {
 TEST(AncfBeam, RefusesWhatMakesNoSense) {
   const auto refused = [](const std::function<void()>& f, const std::string& part) {
     const std::string text = error_of(Error::Kind::input, f);
-    EXPECT_TRUE(says(text, part)) << text;
+    EXPECT_TRUE(mentions(text, part)) << text;
   };
-  refused([] { AncfBeam(-1, 0.1, 3); }, "positive length");
+  refused([] { AncfBeam(-1, 0.1, 3); }, "the length must be positive");
   refused([] { AncfBeam(1, 0.1, 0); }, "at least one element");
-  refused([] { AncfBeam(1, 0, 3); }, "height is positive");
-  refused([] { AncfBeam(1, std::nan(""), 3); }, "height is positive");
+  refused([] { AncfBeam(1, 0, 3); }, "height must be positive");
+  refused([] { AncfBeam(1, std::nan(""), 3); }, "height must be positive");
   refused([] { AncfBeam(std::vector<double>{0, 1, 1}, 0.1); }, "increase");
-  refused([] { AncfBeam({0, 1}, 0.1, arc_reference(1, 1, 2)); }, "3 nodes of the reference");
-  // An arc of radius 0.1 cannot be 0.3 high: its inner half is folded.
-  refused([] { AncfBeam(even_nodes(0.1, 4), 0.3, arc_reference(0.1, 1, 4)); }, "folded at x");
+  refused(
+      [] {
+        AncfBeam({0, 1}, 0.1, arc_reference(1, 1, 2));
+      },
+      "3 nodes are given for the reference");
+  // An arc of radius 0.1 cannot have a height of 0.3, because its inner half would be folded.
+  refused([] { AncfBeam(uniform_nodes(0.1, 4), 0.3, arc_reference(0.1, 1, 4)); }, "folded at x");
   refused([] { AncfBeam({0, 1}, 0.1, {{}, {{1, 0}, {1, 0}, {0, -1}}}); }, "folded");
   refused([] { AncfBeam({0, 1}, 0.1, {{}, {{std::nan(""), 0}, {1, 0}, {0, 1}}}); }, "finite");
   const AncfBeam beam(1, 0.1, 4);
@@ -349,15 +356,19 @@ TEST(AncfBeam, RefusesWhatMakesNoSense) {
   refused([&] { beam.locate({std::nan(""), 0}, Tabulate::position, t); }, "outside the beam");
   refused([&] { beam.edge("side_low"); }, "'line 0' to 'line 4'");
   refused([&] { beam.edge("line 5"); }, "'line 0' to 'line 4'");
-  refused([&] { beam.tabulate(0, 4, Tabulate::curvature, {}, FactorKind::none, t); },
+  refused([&] { beam.tabulate(0, 4, Tabulate::curvature, {}, ScaleFactorKind::none, t); },
           "second derivatives");
-  Factors factors;
+  ScaleFactors factors;
   factors.stiffness = factors.mass = VectorXd::Ones(4);
-  refused([&] { make_inertia(kSection)->prepare(beam, factors, true); }, "no factors of a design");
-  refused([&] { make_beam_ecm(kSection)->prepare(beam, factors, true); }, "no factors of a design");
+  refused([&] { make_inertia(kSection)->prepare(beam, factors, true); },
+          "does not support scale factors of a design");
+  refused([&] { make_beam_ecm(kSection)->prepare(beam, factors, true); },
+          "does not support scale factors of a design");
   refused([&] { make_membrane(kSection)->prepare(beam, {}, true); }, "four nodes");
   VectorXd load = VectorXd::Ones(2);
   refused([&] { make_edge_load("free_end", load)->prepare(beam, {}, true); }, "is one node");
+  refused([&] { make_turning_edge_load("free_end", load)->prepare(beam, {}, true); },
+          "is one node");
 }
 
 }  // namespace

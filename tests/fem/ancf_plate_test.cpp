@@ -1,6 +1,6 @@
 // Shows that both shape sets of the plate reproduce rigid motions and linear fields, that all
 // tables agree with differences in space and in time while lines accelerate through the material,
-// and that factors cut by moving lines are integrated exactly.
+// and that factors on cells cut by moving lines are integrated exactly.
 #include "fem/elements/ancf_plate.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ INSTANTIATE_TEST_SUITE_P(Plate, EveryShapeSet, ::testing::Values(ShapeSet::h12, 
                            return set.param == ShapeSet::h12 ? "h12" : "h16";
                          });
 
-/// Nodal values of r = turn X + shift.
+/// Returns the nodal values of r = turn X + shift.
 MatrixXd linear_field(const AncfPlate& plate, const Eigen::Matrix2d& turn, const Vec2& shift) {
   MatrixXd q = plate.reference() * turn.transpose();
   for (int k = 0; k < plate.n_vectors(); ++k)
@@ -36,7 +36,8 @@ MatrixXd linear_field(const AncfPlate& plate, const Eigen::Matrix2d& turn, const
   return q;
 }
 
-// Rotations among them: the functions contain all linear fields, so only round-off is left.
+// The shape functions contain all linear fields, rotations included, so that only round-off
+// remains.
 TEST_P(EveryShapeSet, ReproducesLinearFields) {
   const AncfPlate plate = swinging_plate(GetParam(), 0.3);
   Eigen::Matrix2d turn;
@@ -54,11 +55,12 @@ TEST_P(EveryShapeSet, ReproducesLinearFields) {
   }
 }
 
-// Bogner-Fox-Schmit contains the twist m n, the incomplete set does not (fem/README.md, Plate
-// element).
+// The complete set of Bogner-Fox-Schmit contains the twist m n, the incomplete set does not
+// (fem/README.md, Plate element).
 TEST(AncfPlate, OnlyTheCompleteSetContainsTheTwist) {
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16}) {
-    const AncfPlate plate(2, shapes, testing::even_lines(0, 1, 1), testing::even_lines(0, 1, 1));
+    const AncfPlate plate(2, shapes, testing::uniform_lines(0, 1, 1),
+                          testing::uniform_lines(0, 1, 1));
     MatrixXd q = MatrixXd::Zero(plate.n_vectors(), 2);
     for (const char* name : {"root", "free_end"})
       for (const NodeVectors& node : plate.edge(name)) {
@@ -88,7 +90,8 @@ TEST_P(EveryShapeSet, GradientsAreDifferencesInTheMaterial) {
         return MatrixXd(near.N);
       };
     };
-    // Cubic in each direction: differences of order 4 are exact, round-off is 1e-16 / 1e-3.
+    // The functions are cubic in each direction; therefore differences of order 4 are exact, and
+    // the round-off is 1e-16 / 1e-3.
     EXPECT_LT((t.N_m - first_difference(along({1, 0}), 1e-3)).norm(), 1e-11);
     EXPECT_LT((t.N_n - first_difference(along({0, 1}), 1e-3)).norm(), 1e-11);
   }
@@ -109,8 +112,8 @@ TEST_P(EveryShapeSet, RatesAreDifferencesInTimeAtAFixedMaterialPoint) {
         return MatrixXd(near.*field);
       };
     };
-    // Step 1e-3: truncation and round-off of the second difference are near 1e-9; slopes of the
-    // functions reach 1 / 0.06.
+    // With the step 1e-3 truncation and round-off of the second difference are near 1e-9; the
+    // derivatives of the functions reach 1 / 0.06.
     EXPECT_LT((t.N_t - first_difference(later(&ShapeTable::N), 1e-3)).norm(), 1e-9);
     EXPECT_LT((t.N_tt - second_difference(later(&ShapeTable::N), 1e-3)).norm(), 3e-8);
     EXPECT_LT((t.N_mt - first_difference(later(&ShapeTable::N_m), 1e-3)).norm(), 1e-7);
@@ -133,31 +136,32 @@ TEST_P(EveryShapeSet, RatesAreDifferencesInTimeAtAFixedMaterialPoint) {
 }
 
 TEST(AncfPlate, TablesWithoutFlowHaveNoRates) {
-  const AncfPlate plate(2, ShapeSet::h16, testing::even_lines(0, 1, 2),
-                        testing::even_lines(0, 1, 1));
+  const AncfPlate plate(2, ShapeSet::h16, testing::uniform_lines(0, 1, 2),
+                        testing::uniform_lines(0, 1, 1));
   ShapeTable t;
-  plate.tabulate(0, 3, Tabulate::gradient_rates, {}, FactorKind::none, t);
+  plate.tabulate(0, 3, Tabulate::gradient_rates, {}, ScaleFactorKind::none, t);
   EXPECT_EQ(t.N_t.size() + t.N_tt.size() + t.N_mt.size() + t.N_nt.size(), 0);
-  plate.tabulate(0, 3, Tabulate::curvature_rates, {}, FactorKind::none, t);
+  plate.tabulate(0, 3, Tabulate::curvature_rates, {}, ScaleFactorKind::none, t);
   EXPECT_EQ(t.N_mmt.size() + t.N_nnt.size() + t.N_mnt.size(), 0);
   EXPECT_FALSE(plate.moving(0));
 }
 
-/// A polynomial of exactly the degree in each direction.
+/// Returns a polynomial of exactly the given degree in each direction.
 double polynomial(const Vec2& x, int degree) {
   return std::pow(3 * x.x() - 0.4, degree) * std::pow(9 * x.y() + 0.3, degree);
 }
 
-// Cells cut by moving lines count exactly.
+// Weights on cells that are cut by moving lines are compared with an integration of each cell.
 TEST_P(EveryShapeSet, FactorsAreIntegratedCellByCell) {
-  const Factors factors = testing::random_factors(7);
+  const ScaleFactors factors = testing::random_factors(7);
   AncfPlate plate = swinging_plate(GetParam());
   ShapeTable t;
   for (const double time : {0.0, 0.37, 1.1}) {
     plate.move_to(time);
     for (int e = 0; e < plate.n_elements(); ++e)
       for (const int degree : {0, 3, 6, 12})
-        for (const FactorKind kind : {FactorKind::none, FactorKind::stiffness, FactorKind::mass}) {
+        for (const ScaleFactorKind kind :
+             {ScaleFactorKind::none, ScaleFactorKind::stiffness, ScaleFactorKind::mass}) {
           plate.tabulate(e, degree, Tabulate::position, factors, kind, t);
           double sum = 0, largest = 0;
           for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
@@ -174,13 +178,13 @@ TEST_P(EveryShapeSet, FactorsAreIntegratedCellByCell) {
   }
 }
 
-// The product form holds the same numbers as the plain table.
+// The product form must give the numbers of the plain table.
 TEST_P(EveryShapeSet, ProductsAreThePlainTable) {
-  const Factors factors = testing::random_factors(7);
+  const ScaleFactors factors = testing::random_factors(7);
   const AncfPlate plate = swinging_plate(GetParam(), 0.37);
   ShapeTable t;
   ProductTable products;
-  for (const FactorKind kind : {FactorKind::none, FactorKind::stiffness}) {
+  for (const ScaleFactorKind kind : {ScaleFactorKind::none, ScaleFactorKind::stiffness}) {
     plate.tabulate(1, 12, Tabulate::gradient, factors, kind, t);
     ASSERT_TRUE(plate.tabulate_products(1, 12, factors, kind, products));
     ASSERT_EQ(products.weight.size(), t.weight.size());
@@ -199,16 +203,16 @@ TEST_P(EveryShapeSet, ProductsAreThePlainTable) {
 }
 
 TEST_P(EveryShapeSet, WholeMassIsTheSumOfTheCellsOutside) {
-  const Factors factors = testing::random_factors(3);
+  const ScaleFactors factors = testing::random_factors(3);
   const double time = 0.62;
   const AncfPlate plate = swinging_plate(GetParam(), time);
   double sum = 0;
   ShapeTable t;
   for (int e = 0; e < plate.n_elements(); ++e) {
-    plate.tabulate(e, 6, Tabulate::position, factors, FactorKind::mass, t);
+    plate.tabulate(e, 6, Tabulate::position, factors, ScaleFactorKind::mass, t);
     sum += t.weight.sum();
   }
-  // Cell by cell, cut by the root and by the other edges of the plate.
+  // The expected mass is the sum over all cells, each cut by the root and by the other edges.
   double exact = 0;
   const Grid& g = factors.grid;
   for (int i = 0; i < g.nx; ++i)
@@ -221,18 +225,19 @@ TEST_P(EveryShapeSet, WholeMassIsTheSumOfTheCellsOutside) {
   EXPECT_NEAR(sum, exact, 1e-13 * exact);
 }
 
-// Weights follow the root through a cell line without a jump: over 1e-9 s they change by the
-// material that passes (1e-9 s x 0.06 m/s x factor per area) and no more.
+// Weights are continuous when the root passes a cell line: over 1e-9 s they change only by the
+// material that passes (1e-9 s x 0.06 m/s x factor per area).
 TEST_P(EveryShapeSet, WeightsAreContinuousWhenALineCrossesACellLine) {
-  Factors factors = testing::random_factors(3);
+  ScaleFactors factors = testing::random_factors(3);
   AncfPlate plate = swinging_plate(GetParam());
   const double time = 0.4;
   plate.move_to(time);
-  factors.grid.x0 = plate.line_m(0).value - 3 * factors.grid.dx();  // on a cell line now
+  // the line is on a cell line at this time
+  factors.grid.x0 = plate.line_m(0).value - 3 * factors.grid.dx();
   const auto mass = [&](double at) {
     plate.move_to(at);
     ShapeTable t;
-    plate.tabulate(0, 12, Tabulate::position, factors, FactorKind::stiffness, t);
+    plate.tabulate(0, 12, Tabulate::position, factors, ScaleFactorKind::stiffness, t);
     return t.weight.sum();
   };
   EXPECT_NEAR(mass(time + 1e-9), mass(time - 1e-9), 1e-11);
@@ -240,11 +245,11 @@ TEST_P(EveryShapeSet, WeightsAreContinuousWhenALineCrossesACellLine) {
 }
 
 TEST(AncfPlate, RefusesWhatIsNoPlate) {
-  EXPECT_THROW(AncfPlate(2, ShapeSet::h16, {{0, {}}}, testing::even_lines(0, 1, 1)), Error);
-  EXPECT_THROW(AncfPlate(2, ShapeSet::h16, {{0.5, {}}, {0.2, {}}}, testing::even_lines(0, 1, 1)),
+  EXPECT_THROW(AncfPlate(2, ShapeSet::h16, {{0, {}}}, testing::uniform_lines(0, 1, 1)), Error);
+  EXPECT_THROW(AncfPlate(2, ShapeSet::h16, {{0.5, {}}, {0.2, {}}}, testing::uniform_lines(0, 1, 1)),
                Error);
-  const AncfPlate plate(2, ShapeSet::h12, testing::even_lines(0, 1, 2),
-                        testing::even_lines(0, 1, 1));
+  const AncfPlate plate(2, ShapeSet::h12, testing::uniform_lines(0, 1, 2),
+                        testing::uniform_lines(0, 1, 1));
   ShapeTable t;
   EXPECT_THROW(plate.locate({1.1, 0.5}, Tabulate::position, t), Error);
   EXPECT_THROW(plate.edge("left"), Error);

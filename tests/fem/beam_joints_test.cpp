@@ -1,6 +1,6 @@
-// Shows that loads, joints, links and the start of a motion take beams: resultants of gravity and
-// loads, markers on beam points, welds of curved and sheared ends with their derivatives, held
-// nodes, placement.
+// Shows that loads, joints, force elements and the start of a motion work with beams: resultants of
+// gravity and loads, markers on beam points, welds of curved and sheared ends with their
+// derivatives, held nodes, placement.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "fem/body_joints.h"
 #include "fem/dynamics/starts/start.h"
 #include "fem/elements/ancf_beam.h"
-#include "fem/link.h"
+#include "fem/force_element.h"
 #include "fem/loads.h"
 #include "fem/terms.h"
 #include "tests/support/errors.h"
@@ -29,11 +29,12 @@ VectorXd vector(double x, double y) {
 }
 
 std::unique_ptr<AncfBeam> quarter_arc() {
-  return std::make_unique<AncfBeam>(even_nodes(0.9, 6), kHeight,
+  return std::make_unique<AncfBeam>(uniform_nodes(0.9, 6), kHeight,
                                     arc_reference(0.9, std::numbers::pi / 2, 6));
 }
 
-/// Force of one load alone on the reference; its resultant is what a translation feels.
+/// Returns the resultant of one load on the reference configuration: its virtual work in a
+/// translation.
 Vec2 resultant(std::unique_ptr<Term> load, double* moment = nullptr) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(std::move(load));
@@ -57,7 +58,7 @@ TEST(BeamLoads, HaveTheirResultants) {
   double area = 0;
   ShapeTable t;
   for (int e = 0; e < 6; ++e) {
-    beam->tabulate(e, 8, Tabulate::position, {}, FactorKind::none, t);
+    beam->tabulate(e, 8, Tabulate::position, {}, ScaleFactorKind::none, t);
     area += t.weight.sum();
   }
   EXPECT_NEAR(area, 0.09 * (1 - std::pow(std::numbers::pi / 12, 2) / 12), 1e-6);
@@ -67,7 +68,8 @@ TEST(BeamLoads, HaveTheirResultants) {
   const Vec2 surface = resultant(make_surface_load(vector(3, 4)));
   EXPECT_NEAR(surface.x(), 3 * area, 1e-14);
   EXPECT_NEAR(surface.y(), 4 * area, 1e-14);
-  // A force off the axis has its moment, at the face of the free end: a quarter turn to the left.
+  // A force off the axis at the face of the free end has a moment; the axis is rotated by 90
+  // degrees to the left there.
   double moment = 0;
   const Vec2 force = resultant(make_point_force({0.9, kHeight / 2}, vector(5, -7)), &moment);
   EXPECT_NEAR(force.x(), 5, 1e-13);
@@ -79,7 +81,7 @@ TEST(BeamLoads, HaveTheirResultants) {
   EXPECT_NEAR(mass.y(), -2 * 9.81, 1e-12);
 }
 
-/// A beam and a rigid body, some joint between them, a state near the one where it is closed.
+/// A beam and a rigid body with a joint between them, in the reference configuration.
 struct Pair {
   Workspace model;
   State x;
@@ -99,9 +101,9 @@ struct Pair {
   }
 };
 
-// Rows vanish on the undeformed bodies where the frame stands at the node with its first axis along
-// r_m; the Jacobian is that of differences (rows are of degree 2: central ones are exact), and
-// accelerations are those of the second derivative along a motion.
+// The rows vanish on the undeformed bodies, where the frame is at the node with its first axis
+// along r_m. The Jacobian equals differences (rows are of degree 2, so that central ones are
+// exact), and the accelerations equal the second derivative along a motion.
 TEST(BeamWelds, HoldCurvedEndsAndHaveExactDerivatives) {
   const double radius = 0.9 / (std::numbers::pi / 2);
   for (const WeldMode mode :
@@ -154,52 +156,55 @@ TEST(BeamWelds, TakeTheReferenceVectorsOfTheEnd) {
   }
 }
 
-// Joints and springs find points of a beam, on the axis and off it.
+// Joints and springs can be attached to points of a beam, on the axis and off it.
 TEST(BeamMarkers, ArePointsOfTheBeam) {
   Pair pair(make_revolute("hinge", {"hub", {0.45, 0.03}}, {"beam", {0.45, 0.03}}),
             std::make_unique<AncfBeam>(0.9, kHeight, 5));
   EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);
-  pair.model.add_link(make_spring("spring", {}, {"beam", {0.9, -kHeight / 2}}, {100, 0, 0}));
+  pair.model.add_force_element(
+      make_spring("spring", {}, {"beam", {0.9, -kHeight / 2}}, {100, 0, 0}));
   pair.model.prepare(0);
   const double length2 = 0.9 * 0.9 + kHeight * kHeight / 4;
   EXPECT_NEAR(pair.model.energies(pair.x).strain, 50 * length2, 1e-12);
-  const PlaceMotion place = pair.model.place_motion({"beam", {0.3, 0.04}}, pair.x);
-  EXPECT_LT((place.position - Vec2(0.3, 0.04)).norm(), 1e-15);
+  const LocationMotion location = pair.model.location_motion({"beam", {0.3, 0.04}}, pair.x);
+  EXPECT_LT((location.position - Vec2(0.3, 0.04)).norm(), 1e-15);
   const std::string text = testing::error_of(Error::Kind::input, [&] {
     pair.model.add_joint(make_revolute("off", {}, {"beam", {0.3, 0.06}}));
   });
-  EXPECT_TRUE(testing::says(text, "outside the beam")) << text;
+  EXPECT_TRUE(testing::mentions(text, "outside the beam")) << text;
 }
 
 TEST(BeamHolds, FindNodesByTheirCoordinates) {
   Pair pair(make_hold("held", "beam",
-                      {{HoldPlace::at({0.45, 0}), NodeVector::r, {1}, {}},
+                      {{HoldLocation::at({0.45, 0}), NodeVector::r, {1}, {}},
                        {{.edge = "free_end"}, NodeVector::r_n, {0, 1}, {}}}));
   ASSERT_EQ(pair.model.joints()[1]->size(), 3);
-  EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);  // at the reference of the arc
+  // the node is at the reference position on the arc
+  EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);
   const std::string text = testing::error_of(Error::Kind::input, [] {
-    Pair(make_hold("held", "beam", {{HoldPlace::at({0.4, 0}), NodeVector::r, {1}, {}}}));
+    Pair(make_hold("held", "beam", {{HoldLocation::at({0.4, 0}), NodeVector::r, {1}, {}}}));
   });
-  EXPECT_TRUE(testing::says(text, "no node of body 'beam'")) << text;
+  EXPECT_TRUE(testing::mentions(text, "no node of body 'beam'")) << text;
 }
 
-// A beam that is placed moves as a rigid body: every point as the frame says.
+// A placed beam starts to move as a rigid body: every point has the position and velocity that the
+// frame gives it.
 TEST(BeamStart, PlacedBeamsMoveAsRigidBodies) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(kSection));
   Workspace model;
   model.add_body("beam", quarter_arc(), kSection, std::move(terms));
   const FrameMotion f{{0.3, -0.2}, {1, 2}, {0, 0}, 0.8, 3, 0};
-  const Placement placement = [&](double) { return std::vector<Placed>{{"beam", f}}; };
-  const State x = start_state(model, {}, 0, Start::rigid, placement);
+  const BodyPoses body_poses = [&](double) { return std::vector<BodyPose>{{"beam", f}}; };
+  const State x = start_state(model, {}, 0, Start::rigid, body_poses);
   const Vec2 at(0.4, 0.03);
   State reference = model.reference();
-  const Vec2 X = model.place_motion({"beam", at}, reference).position;
-  const PlaceMotion place = model.place_motion({"beam", at}, x);
+  const Vec2 X = model.location_motion({"beam", at}, reference).position;
+  const LocationMotion location = model.location_motion({"beam", at}, x);
   const double c = std::cos(0.8), s = std::sin(0.8);
   const Vec2 arm(c * X.x() - s * X.y(), s * X.x() + c * X.y());
-  EXPECT_LT((place.position - f.origin - arm).norm(), 1e-15);
-  EXPECT_LT((place.velocity - f.origin_rate - 3 * Vec2(-arm.y(), arm.x())).norm(), 1e-14);
+  EXPECT_LT((location.position - f.origin - arm).norm(), 1e-15);
+  EXPECT_LT((location.velocity - f.origin_rate - 3 * Vec2(-arm.y(), arm.x())).norm(), 1e-14);
 }
 
 }  // namespace

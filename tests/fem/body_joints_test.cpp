@@ -1,8 +1,8 @@
-// Shows that the rows of every joint between places are what they say: value, rate, right side of
-// the acceleration and tangent against differences at random states and along random motions, on
-// rigid bodies, plates (also with lines that move) and the ground; that their places in the matrix
-// stay; that a plate welded to a rigid body is one welded to a driven hub when the body moves so;
-// and that a joint does to one body the opposite of what it does to the other.
+// Shows that the rows of every joint between markers are correct: value, rate, right side of the
+// acceleration and tangent against differences at random states and along random motions, on rigid
+// bodies, plates (also with lines that move) and the ground. Shows also that the positions of their
+// matrix entries do not change, that a plate welded to a moving rigid body has the rows of a plate
+// welded to a driven hub with that motion, and that an undeformed plate fits its weld.
 #include "fem/body_joints.h"
 
 #include <gtest/gtest.h>
@@ -22,29 +22,29 @@ using testing::second_difference;
 using testing::ShapeSet;
 using testing::SmoothMotion;
 
-Motion swing(double mean, double amplitude, double pulsation, double t) {
-  return {mean + amplitude * std::sin(pulsation * t),
-          amplitude * pulsation * std::cos(pulsation * t),
-          -amplitude * pulsation * pulsation * std::sin(pulsation * t)};
+Motion swing(double mean, double amplitude, double angular_frequency, double t) {
+  return {mean + amplitude * std::sin(angular_frequency * t),
+          amplitude * angular_frequency * std::cos(angular_frequency * t),
+          -amplitude * angular_frequency * angular_frequency * std::sin(angular_frequency * t)};
 }
 Motion length(double t) { return swing(0.7, 0.2, 1.9, t); }
 Motion angle(double t) { return swing(0.4, 1.1, 1.4, t); }
 
-MarkerPlace one() { return {.body = "one", .point = {0.3, -0.2}, .angle = 0.8}; }
-MarkerPlace one_shifted() {
+MarkerLocation one() { return {.body = "one", .point = {0.3, -0.2}, .angle = 0.8}; }
+MarkerLocation one_shifted() {
   return {.body = "one", .point = {0.3, -0.2}, .angle = 0.8, .along = [](double t) {
             return swing(0.1, 0.2, 2.3, t);
           }};
 }
-MarkerPlace two() { return {.body = "two", .point = {-0.1, 0.4}, .angle = -1.9}; }
-MarkerPlace ground() { return {.point = {0.2, 0.1}, .angle = 0.3}; }
-MarkerPlace ground_shifted() {
+MarkerLocation two() { return {.body = "two", .point = {-0.1, 0.4}, .angle = -1.9}; }
+MarkerLocation ground() { return {.point = {0.2, 0.1}, .angle = 0.3}; }
+MarkerLocation ground_shifted() {
   return {.point = {0.2, 0.1}, .angle = 0.3, .along = [](double t) {
             return swing(-0.1, 0.3, 1.7, t);
           }};
 }
-MarkerPlace plate() { return {.body = "plate", .point = {0.13, 0.02}}; }
-MarkerPlace tip() { return {.body = "plate", .point = {0.3, 0.05}}; }
+MarkerLocation plate() { return {.body = "plate", .point = {0.13, 0.02}}; }
+MarkerLocation tip() { return {.body = "plate", .point = {0.3, 0.05}}; }
 
 std::vector<Motion> path(double t) { return {swing(0.1, 0.4, 1.2, t), swing(0.3, 0.2, 2.2, t)}; }
 std::vector<Motion> path_y(double t) { return {swing(0.3, 0.2, 2.2, t)}; }
@@ -53,8 +53,8 @@ struct JointCase {
   std::string name;
   int rows;
   std::function<std::unique_ptr<Joint>()> make;
-  std::string edge_of{}, edge{};  // of welds
-  MarkerPlace (*frame)() = nullptr;
+  std::string edge_of{}, edge{};  // only for welds
+  MarkerLocation (*frame)() = nullptr;
 };
 
 std::vector<JointCase> cases() {
@@ -81,18 +81,19 @@ std::vector<JointCase> cases() {
 }
 
 std::vector<JointCase> edge_cases() {
-  struct Place {
+  struct Location {
     std::string name, body, edge;
-    MarkerPlace (*frame)();
-    int rows[3];  // by mode
+    MarkerLocation (*frame)();
+    int rows[3];  // for each mode
   };
-  const Place places[] = {{"root_of_sheet", "sheet", "root", one_shifted, {12, 18, 24}},
-                          {"line_of_sheet", "sheet", "line 2", two, {12, 18, 24}},
-                          {"end_of_plate", "plate", "free_end", one, {12, 15, 18}},
-                          {"end_on_ground", "plate", "free_end", ground_shifted, {12, 15, 18}}};
+  const Location locations[] = {
+      {"root_of_sheet", "sheet", "root", one_shifted, {12, 18, 24}},
+      {"line_of_sheet", "sheet", "line 2", two, {12, 18, 24}},
+      {"end_of_plate", "plate", "free_end", one, {12, 15, 18}},
+      {"end_on_ground", "plate", "free_end", ground_shifted, {12, 15, 18}}};
   const char* modes[] = {"edge", "direction", "full"};
   std::vector<JointCase> out;
-  for (const Place& p : places)
+  for (const Location& p : locations)
     for (const WeldMode mode : {WeldMode::edge, WeldMode::direction, WeldMode::full})
       out.push_back({p.name + "_" + modes[static_cast<size_t>(mode)],
                      p.rows[static_cast<size_t>(mode)],
@@ -101,12 +102,12 @@ std::vector<JointCase> edge_cases() {
   return out;
 }
 
-/// Two rigid bodies, a plate whose lines stand still (h12) and one whose lines swing (h16).
+/// Two rigid bodies, a plate whose lines are fixed (h12) and a plate whose lines oscillate (h16).
 class EveryBodyJoint : public ::testing::TestWithParam<JointCase> {
  protected:
   EveryBodyJoint()
-      : plate(2, ShapeSet::h12, testing::even_lines(0, 0.3, 2),
-              testing::even_lines(-0.05, 0.05, 2)),
+      : plate(2, ShapeSet::h12, testing::uniform_lines(0, 0.3, 2),
+              testing::uniform_lines(-0.05, 0.05, 2)),
         sheet(testing::swinging_plate(ShapeSet::h16)),
         joint(GetParam().make()) {
     const Element* elements[] = {&sheet, &first, &plate, &second};
@@ -139,7 +140,7 @@ class EveryBodyJoint : public ::testing::TestWithParam<JointCase> {
   AncfPlate plate, sheet;
   std::unique_ptr<Joint> joint;
   std::vector<BodyView> views;
-  int n = 3;  // behind other unknowns
+  int n = 3;  // the joint acts on unknowns that do not begin at 0
   std::unique_ptr<SmoothMotion> motion;
 };
 INSTANTIATE_TEST_SUITE_P(Joints, EveryBodyJoint, ::testing::ValuesIn(cases()),
@@ -151,7 +152,7 @@ class EveryEdgeWeld : public EveryBodyJoint {};
 INSTANTIATE_TEST_SUITE_P(EdgeWelds, EveryEdgeWeld, ::testing::ValuesIn(edge_cases()),
                          [](const auto& c) { return c.param.name; });
 
-// Truncation (1e-3 x 3)^4 / 30 and round-off 1e-16 / 1e-6 (second) stay below 1e-8.
+// Truncation (1e-3 x 3)^4 / 30 and round-off 1e-16 / 1e-6 (second derivative) are below 1e-8.
 TEST_P(EveryBodyJoint, RowsAreDifferencesAlongAMotion) {
   ASSERT_EQ(joint->size(), GetParam().rows);
   for (const double t : {0.6, 2.1}) {
@@ -171,7 +172,7 @@ TEST_P(EveryBodyJoint, RateIsThePartialDerivativeByTime) {
   EXPECT_LT((rows(t).rate - first_difference(value, 1e-3)).norm(), 1e-10);
 }
 
-// Of degree 2 in q: differences are exact but for round-off.
+// The rows are of degree 2 in q; therefore differences are exact except for round-off.
 TEST_P(EveryBodyJoint, JacobianAndTangentAreDerivativesByTheUnknowns) {
   const double t = 0.6;
   const VectorXd direction = VectorXd::Random(n), lambda = VectorXd::Random(joint->size());
@@ -189,8 +190,8 @@ TEST_P(EveryBodyJoint, JacobianAndTangentAreDerivativesByTheUnknowns) {
   EXPECT_LT((tangent - first_difference(force, 0.1)).norm(), 1e-12);
 }
 
-TEST_P(EveryBodyJoint, PlacesStayAndHoldNoNumberThatIsAlwaysZero) {
-  const auto places = [&](double t, const VectorXd& q) {
+TEST_P(EveryBodyJoint, LocationsStayAndHoldNoNumberThatIsAlwaysZero) {
+  const auto locations = [&](double t, const VectorXd& q) {
     std::vector<std::pair<int, int>> out;
     for (const auto& entry : rows(t, q, q).jacobian) out.emplace_back(entry.row(), entry.col());
     std::vector<Eigen::Triplet<double>> entries;
@@ -198,11 +199,11 @@ TEST_P(EveryBodyJoint, PlacesStayAndHoldNoNumberThatIsAlwaysZero) {
     for (const auto& entry : entries) out.emplace_back(entry.row(), entry.col());
     return out;
   };
-  EXPECT_EQ(places(0, VectorXd::Zero(n)), places(1.3, VectorXd::Random(n)));
+  EXPECT_EQ(locations(0, VectorXd::Zero(n)), locations(1.3, VectorXd::Random(n)));
   for (const auto& entry : rows(0.6).jacobian) EXPECT_NE(entry.value(), 0);
 }
 
-// The undeformed plate, carried along by its frame, fits.
+// The rows vanish for the undeformed plate that moves rigidly with its frame.
 TEST_P(EveryEdgeWeld, RigidlyMovedPlateFits) {
   const double t = 0.6;
   const bool is_sheet = GetParam().edge_of == "sheet";
@@ -210,20 +211,21 @@ TEST_P(EveryEdgeWeld, RigidlyMovedPlateFits) {
   const int first_of = views[is_sheet ? 0 : 2].first_dof;
   VectorXd q = motion->q(t);
   for (const size_t i : {1U, 3U}) q.segment<2>(views[i].first_dof + 2).normalize();
-  // The frame, by the definition of a place.
-  const MarkerPlace place = GetParam().frame();
-  Vec2 at = place.point;
-  if (place.along) at += place.along(t).value * Vec2(std::cos(place.angle), std::sin(place.angle));
+  // The pose of the frame, computed from the definition of a marker location.
+  const MarkerLocation location = GetParam().frame();
+  Vec2 at = location.point;
+  if (location.along)
+    at += location.along(t).value * Vec2(std::cos(location.angle), std::sin(location.angle));
   Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
   Vec2 origin(0, 0);
-  if (!place.body.empty()) {
-    const int dof = views[place.body == "one" ? 1 : 3].first_dof;
+  if (!location.body.empty()) {
+    const int dof = views[location.body == "one" ? 1 : 3].first_dof;
     const Vec2 u = q.segment<2>(dof + 2);
     turn << u.x(), -u.y(), u.y(), u.x();
     origin = q.segment<2>(dof);
   }
   const Vec2 hub = origin + turn * at;
-  turn *= Eigen::Rotation2Dd(place.angle).toRotationMatrix();
+  turn *= Eigen::Rotation2Dd(location.angle).toRotationMatrix();
   const MatrixXd reference = grid.reference();
   const double line = grid.edge(GetParam().edge)[0].material.x();
   for (int k = 0; k < grid.n_vectors(); ++k) {
@@ -234,7 +236,8 @@ TEST_P(EveryEdgeWeld, RigidlyMovedPlateFits) {
   EXPECT_LT(rows(t, q, q).value.cwiseAbs().maxCoeff(), 1e-15);
 }
 
-// Rows of a plate welded to a body that moves as a hub does are those of the hub's weld.
+// The rows of a plate welded to a body that moves as a driven hub equal the rows of the weld to
+// that hub.
 TEST(EdgeWeld, OnABodyIsAWeldInADrivenHub) {
   const double t = 0.6;
   const Motion x = swing(0.1, 0.4, 1.2, t), y = swing(0.3, 0.2, 2.2, t), alpha = angle(t);
@@ -257,7 +260,7 @@ TEST(EdgeWeld, OnABodyIsAWeldInADrivenHub) {
                            dim, shapes,
                            std::vector<MaterialLine>{
                                testing::swinging_line(0, 0.02, 1.3), {0.1, {}}, {0.3, {}}},
-                           testing::even_lines(-0.05, 0.05, 2)),
+                           testing::uniform_lines(-0.05, 0.05, 2)),
                        {}, {});
         testing::add_rigid(model, "hub", {.mass = 1, .inertia = 1});
         const BodyView views[] = {
@@ -282,7 +285,7 @@ TEST(EdgeWeld, OnABodyIsAWeldInADrivenHub) {
                       {x.acceleration, y.acceleration},
                       alpha.acceleration},
                      s);
-        // Φ, dΦ/dt and d²Φ/dt² of both: the same rows, in another order.
+        // Φ, dΦ/dt and d²Φ/dt² of both joints; their rows are equal, but in another order.
         const auto measured = [&](const Joint& joint) {
           ConstraintRows rows;
           joint.evaluate(t, s.q, s.v, rows);
@@ -306,10 +309,11 @@ TEST(EdgeWeld, OnABodyIsAWeldInADrivenHub) {
 }
 
 TEST(BodyJoints, NameWhatTheyCannotUse) {
-  const AncfPlate plate(2, ShapeSet::h16, testing::even_lines(0, 0.3, 2),
-                        testing::even_lines(-0.05, 0.05, 2)),
+  const AncfPlate plate(2, ShapeSet::h16, testing::uniform_lines(0, 0.3, 2),
+                        testing::uniform_lines(-0.05, 0.05, 2)),
       sheet = testing::swinging_plate(ShapeSet::h16),
-      space(3, ShapeSet::h16, testing::even_lines(0, 0.3, 2), testing::even_lines(-0.05, 0.05, 2));
+      space(3, ShapeSet::h16, testing::uniform_lines(0, 0.3, 2),
+            testing::uniform_lines(-0.05, 0.05, 2));
   const RigidBody one(1);
   const std::string names[] = {"plate", "sheet", "space", "one"};
   const BodyView views[] = {
@@ -324,10 +328,10 @@ TEST(BodyJoints, NameWhatTheyCannotUse) {
     }
   };
   refused(make_revolute("j", {.body = "arm"}, {.body = "one"}), "no body 'arm'");
-  refused(make_revolute("j", {}, {}), "both places are on the ground");
+  refused(make_revolute("j", {}, {}), "both locations are on the ground");
   refused(make_revolute("j", {.body = "one"}, {.body = "one", .point = {1, 0}}), "same rigid body");
   refused(make_slider("j", {.body = "one"}, {.body = "plate"}), "has no axes");
-  refused(make_revolute("j", {.body = "plate", .along = length}, {}), "stays at its material");
+  refused(make_revolute("j", {.body = "plate", .along = length}, {}), "cannot move along an axis");
   refused(make_revolute("j", {.body = "plate", .point = {0.5, 0}}, {}), "outside");
   refused(make_revolute("j", {.body = "sheet", .point = {0.2, 0}}, {}), "material lines move");
   refused(make_revolute("j", {.body = "space"}, {}), "in the plane");

@@ -1,6 +1,6 @@
-// The weld of plates and beams to each other: its rows vanish wherever two welded bodies move as
-// one rigid body and hold each freedom once, their derivatives are those of differences, and what
-// it does to one body it does to the other the other way round.
+// Shows that the weld of plates and beams to each other is correct: its rows vanish wherever two
+// welded bodies move as one rigid body and constrain each degree of freedom once, its derivatives
+// equal differences, and the forces on the two bodies are opposite.
 #include "fem/body_weld.h"
 
 #include <gtest/gtest.h>
@@ -27,23 +27,23 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kHeight = 0.1, kLength = 0.9;
 
 std::unique_ptr<Element> plate(ShapeSet shapes, int across = 2, double half_width = 0.05) {
-  return std::make_unique<AncfPlate>(2, shapes, testing::even_lines(0, kLength, 2),
-                                     testing::even_lines(-half_width, half_width, across));
+  return std::make_unique<AncfPlate>(2, shapes, testing::uniform_lines(0, kLength, 2),
+                                     testing::uniform_lines(-half_width, half_width, across));
 }
 
-/// A quarter of a circle, to the left.
+/// Returns a beam along a quarter of a circle that bends to the left.
 std::unique_ptr<Element> arc() {
-  return std::make_unique<AncfBeam>(even_nodes(kLength, 3), kHeight,
+  return std::make_unique<AncfBeam>(uniform_nodes(kLength, 3), kHeight,
                                     arc_reference(kLength, kPi / 2, 3));
 }
 
-/// Straight, its root tapered and sheared.
+/// Returns a straight beam whose root is tapered and sheared.
 std::unique_ptr<Element> sheared() {
   const std::vector<BeamNode> nodes = {{{0, 0}, {1.2, 0}, {0.2, 0.9}}, {{kLength, 0}}};
   return std::make_unique<AncfBeam>(std::vector{0.0, kLength}, kHeight, nodes);
 }
 
-/// Where the middle of an edge is in the undeformed body, and the angle of its axis there.
+/// Location of the middle of an edge in the undeformed body, and the angle of the axis there.
 struct End {
   std::string edge;
   Vec2 middle;
@@ -86,7 +86,8 @@ std::vector<Joined> all_kinds() {
   };
 }
 
-/// Body a turned by an angle, its root moved; body b with it, as the weld says.
+/// Body a with its root moved and rotated by an angle, and body b in the pose that the weld
+/// requires.
 struct Pair {
   Workspace model;
   State x;
@@ -127,7 +128,8 @@ struct Pair {
 
 class BodyWelds : public ::testing::TestWithParam<Joined> {};
 
-// In any pose of the whole, by round-off; rank by singular values of rows of size one.
+// The rows vanish to round-off in any pose of both bodies; the rank is measured by singular values
+// of rows of size one.
 TEST_P(BodyWelds, HoldAWeldedBodyAndEveryFreedomOnce) {
   for (const double angle : {0.0, 0.3, 2.5}) {
     const Pair pair(GetParam(), angle);
@@ -140,7 +142,7 @@ TEST_P(BodyWelds, HoldAWeldedBodyAndEveryFreedomOnce) {
   }
 }
 
-// Rows are of degree two at most: differences are exact.
+// The rows are of degree two at most; therefore differences are exact.
 TEST_P(BodyWelds, HaveTheirDerivatives) {
   const Pair pair(GetParam());
   const auto n = pair.x.q.size();
@@ -162,7 +164,7 @@ TEST_P(BodyWelds, HaveTheirDerivatives) {
   EXPECT_LT((product - testing::first_difference(force, 0.1)).norm(), 1e-12);
 }
 
-// Forces and moments between welded bodies add to zero, about any point.
+// Forces and moments between welded bodies add up to zero about any point.
 TEST_P(BodyWelds, ActAndReact) {
   Pair pair(GetParam());
   std::srand(5);
@@ -188,25 +190,25 @@ TEST(BodyWeld, RefusesWhatDoesNotMeet) {
   const auto h16 = plates(ShapeSet::h16), q4 = plates(ShapeSet::q4);
   const auto three = [] { return plate(ShapeSet::h16, 3); };
   const auto wide = [] { return plate(ShapeSet::h16, 2, 0.06); };
-  const auto says = [](const Joined& j, const std::string& what) {
+  const auto mentions = [](const Joined& j, const std::string& what) {
     const std::string text = refusal(j);
-    EXPECT_TRUE(testing::says(text, what)) << text;
-    EXPECT_TRUE(testing::says(text, "joint 'weld'")) << text;
+    EXPECT_TRUE(testing::mentions(text, what)) << text;
+    EXPECT_TRUE(testing::mentions(text, "joint 'weld'")) << text;
   };
-  says({"", h16, three, kFreeEnd, kRoot, 0, edge, 0}, "2 and 3 elements across");
-  says({"", h16, wide, kFreeEnd, kRoot, 0, edge, 0}, "nodes of the plates do not meet");
-  says({"", h16, q4, kFreeEnd, kRoot, 0, edge, 0}, "elements of two kinds");
-  says({"", h16, h16, kFreeEnd, kRoot, 0.1, edge, 0}, "0 or half a turn");
-  says({"", h16, h16, kFreeEnd, kRoot, 0, partial, 0}, "\"edge\" or \"full\"");
-  says({"", h16, arc, kFreeEnd, kRoot, 0, full, 0}, "a plate and a beam");
-  says({"", arc, arc, kArcEnd, kRoot, 0, direction, 0}, "\"partial\", \"edge\" or \"full\"");
-  says({"", h16, h16, {"side_low", {}}, kRoot, 0, edge, 0}, "runs along 'a'");
+  mentions({"", h16, three, kFreeEnd, kRoot, 0, edge, 0}, "2 and 3 elements across");
+  mentions({"", h16, wide, kFreeEnd, kRoot, 0, edge, 0}, "nodes of the plates do not coincide");
+  mentions({"", h16, q4, kFreeEnd, kRoot, 0, edge, 0}, "elements of different types");
+  mentions({"", h16, h16, kFreeEnd, kRoot, 0.1, edge, 0}, "0 or 180 degrees");
+  mentions({"", h16, h16, kFreeEnd, kRoot, 0, partial, 0}, "\"edge\" or \"full\"");
+  mentions({"", h16, arc, kFreeEnd, kRoot, 0, full, 0}, "a plate and a beam");
+  mentions({"", arc, arc, kArcEnd, kRoot, 0, direction, 0}, "\"partial\", \"edge\" or \"full\"");
+  mentions({"", h16, h16, {"side_low", {}}, kRoot, 0, edge, 0}, "runs along 'a'");
   const std::string unknown = refusal({"", arc, arc, {"end", {}}, kRoot, 0, edge, 0});
-  EXPECT_TRUE(testing::says(unknown, "edge 'end'")) << unknown;
+  EXPECT_TRUE(testing::mentions(unknown, "edge 'end'")) << unknown;
 }
 
 TEST(BodyWeld, RefusesBodiesWithoutSuchEdges) {
-  const auto bind = [](EdgePlace a, EdgePlace b) {
+  const auto bind = [](EdgeLocation a, EdgeLocation b) {
     return testing::error_of(Error::Kind::input, [&] {
       Workspace model;
       model.add_body("arc", arc(), {}, {});
@@ -217,13 +219,13 @@ TEST(BodyWeld, RefusesBodiesWithoutSuchEdges) {
       model.prepare(0);
     });
   };
-  const auto says = [](const std::string& text, const std::string& what) {
-    EXPECT_TRUE(testing::says(text, what)) << text;
+  const auto mentions = [](const std::string& text, const std::string& what) {
+    EXPECT_TRUE(testing::mentions(text, what)) << text;
   };
-  says(bind({"arc", "root"}, {"none", "root"}), "'none'");
-  says(bind({"arc", "root"}, {"arc", "free_end"}), "between two bodies");
-  says(bind({"arc", "root"}, {"rigid", "root"}), "it has no edges");
-  says(bind({"arc", "root"}, {"moving", "root"}), "moves through the material");
+  mentions(bind({"arc", "root"}, {"none", "root"}), "'none'");
+  mentions(bind({"arc", "root"}, {"arc", "free_end"}), "must join two different bodies");
+  mentions(bind({"arc", "root"}, {"rigid", "root"}), "it has no edges");
+  mentions(bind({"arc", "root"}, {"moving", "root"}), "moves through the material");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
-// Shows that motions on cells, whose factor is kept, turns with the plate and is renewed at its
-// border only, are those of the general solver, in less than half of its factorizations; that the
-// part of a matrix that is renewed is that of the whole one; and by how much bodies have turned.
+// Shows that the motions of plates of cells equal those of the general solver with less than half
+// of its factorizations; their matrix factor is kept, rotated with the plate and renewed at its
+// border only. Shows also that the renewed part of a matrix equals the whole new matrix there, and
+// that the measured rotations of bodies are right.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,17 +28,20 @@ RotatingPlate on_cells(int nx, int ny) {
   return p;
 }
 
-/// Adds a plate far away that nothing holds. Material flows through its whole mesh, by 5 to 8 % of
-/// a cell per step, so that neither a border nor the symmetric part of the matrix will do.
+/// Adds an unconstrained plate far away. Material flows through its whole mesh, by 5 to 8 % of a
+/// cell per step, so that the model needs the general solver: renewing the border of the factor is
+/// not sufficient, and the matrix is not symmetric.
 void add_flowing_plate(Workspace& model) {
   std::vector<MaterialLine> lines;
-  for (int k = 0; k <= 30; ++k) lines.push_back(testing::swinging_line(0.01 * k, 1e-3, 480 + 12 * k));
+  for (int k = 0; k <= 30; ++k)
+    lines.push_back(testing::swinging_line(0.01 * k, 1e-3, 480 + 12 * k));
   const PlaneSection section{0.01, 1e8, 0.3, 2700};
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_inertia(section));
   terms.push_back(make_membrane(section));
   model.add_body(
-      "other", std::make_unique<AncfPlate>(2, ShapeSet::q4, lines, testing::even_lines(0, 0.1, 10)),
+      "other",
+      std::make_unique<AncfPlate>(2, ShapeSet::q4, lines, testing::uniform_lines(0, 0.1, 10)),
       section, std::move(terms));
 }
 
@@ -48,16 +52,17 @@ MotionResult move(bool beside_another) {
   settings.end = 0.04;
   settings.start = Start::rigid;
   settings.keep = Keep::steps;
-  settings.placement = [&](double) {
+  settings.body_poses = [&](double) {
     FrameMotion frame;
     frame.origin = {3, 0};
-    return beside_another ? std::vector<Placed>{{"other", frame, 0}} : std::vector<Placed>{};
+    return beside_another ? std::vector<BodyPose>{{"other", frame, 0}} : std::vector<BodyPose>{};
   };
-  return integrate(scene.model, scene.growths, settings, [](const MotionStep&) {});
+  return integrate(scene.model, scene.moving_roots, settings, [](const MotionStep&) {});
 }
 
-// It turns by 14 degrees in 40 steps, three lines come. Newton's method stops at corrections of
-// 1e-11 of the plate's length; forces and velocities are h and h² away from that.
+// The plate rotates by 14 degrees in 40 steps, and at least three lines are inserted. Newton's
+// method stops at corrections of 1e-11 of the plate's length; the tolerances of velocities and
+// multipliers are larger by powers of 1/h.
 TEST(CellsMotion, IsThatOfTheGeneralSolver) {
   const MotionResult alone = move(false), beside = move(true);
   EXPECT_LT(2 * alone.counts.factorizations, beside.counts.factorizations);
@@ -73,8 +78,8 @@ TEST(CellsMotion, IsThatOfTheGeneralSolver) {
   }
 }
 
-/// A growing plate of designed material, of any shapes; a rigid arm hangs at its tip by a hinge,
-/// with a spring to the ground.
+/// An extending plate with varying scale factors, of any shape set; a rigid arm is hinged to its
+/// tip, with a spring to the ground.
 testing::Scene plate_and_arm(ShapeSet shapes) {
   RotatingPlate p = on_cells(12, 4);
   p.shapes = shapes;
@@ -82,14 +87,14 @@ testing::Scene plate_and_arm(ShapeSet shapes) {
   testing::Scene out = testing::make_scene(p);
   testing::add_rigid(out.model, "arm", {0.3, {0, -0.1}, 1e-3}, Vec2(0, -9.81));
   out.model.add_joint(make_revolute("hinge", {.body = "plate", .point = p.tip()}, {.body = "arm"}));
-  out.model.add_link(make_spring("spring", {.body = "arm", .point = {0, -0.2}},
-                                 {.point = {1, -0.5}}, {20, 0.1, 0.3}));
+  out.model.add_force_element(make_spring("spring", {.body = "arm", .point = {0, -0.2}},
+                                          {.point = {1, -0.5}}, {20, 0.1, 0.3}));
   return out;
 }
 
 /// A plate of which one line is free.
 testing::Scene free_line() {
-  std::vector<MaterialLine> lines = testing::even_lines(0, 0.3, 3);
+  std::vector<MaterialLine> lines = testing::uniform_lines(0, 0.3, 3);
   lines[1].free = true;
   const PlaneSection section{0.01, 1e8, 0.3, 2700};
   std::vector<std::unique_ptr<Term>> terms;
@@ -97,13 +102,14 @@ testing::Scene free_line() {
   terms.push_back(make_membrane(section));
   testing::Scene out;
   out.model.add_body(
-      "plate", std::make_unique<AncfPlate>(2, ShapeSet::h16, lines, testing::even_lines(0, 0.1, 2)),
+      "plate",
+      std::make_unique<AncfPlate>(2, ShapeSet::h16, lines, testing::uniform_lines(0, 0.1, 2)),
       section, std::move(terms));
   return out;
 }
 
-// What is chosen is that of the new state to round-off (other orders of the same sums), all else
-// keeps its bits.
+// The chosen rows and columns equal the matrix of the new state to round-off (sums in another
+// order); all other entries keep their bits.
 TEST(Workspaces, RenewThePartOfTheMatrixThatIsChosen) {
   const std::function<testing::Scene()> scenes[] = {[] { return plate_and_arm(ShapeSet::q4); },
                                                     [] { return plate_and_arm(ShapeSet::h16); },
@@ -145,8 +151,8 @@ TEST(Workspaces, RenewThePartOfTheMatrixThatIsChosen) {
   }
 }
 
-// A body moved and turned by any angle has turned by that; what its points do besides counts by its
-// second order; small turns are not noticed.
+// The measured rotation of a rigidly moved and rotated body equals the prescribed angle. A rotation
+// of 5e-5 rad is below the limit of detection.
 TEST(BodyTurns, AreThoseOfTheBestRotation) {
   testing::Scene scene = plate_and_arm(ShapeSet::h16);
   const Workspace& model = scene.model;

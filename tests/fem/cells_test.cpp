@@ -1,5 +1,6 @@
-// Plates of cells: undeformed they have the stiffness of the design problem, nearly empty ones have
-// forces that are derivatives of their energy, alone and side by side, and do not turn inside out.
+// Shows that plates of cells have the stiffness of the design problem when undeformed, that nearly
+// empty cells have forces that are derivatives of their energy, as single elements and in batches,
+// and that nearly empty cells do not invert.
 
 #include <gtest/gtest.h>
 
@@ -23,11 +24,11 @@ using testing::ShapeSet;
 const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 constexpr int kNx = 4, kNy = 3;
 
-/// 4 x 3 cells with a factor each.
+/// A plate of 4 x 3 cells with one factor for each.
 struct Cells {
-  AncfPlate plate{2, ShapeSet::q4, testing::even_lines(0, 0.01, kNx),
-                  testing::even_lines(-0.004, 0.005, kNy)};
-  Factors factors;
+  AncfPlate plate{2, ShapeSet::q4, testing::uniform_lines(0, 0.01, kNx),
+                  testing::uniform_lines(-0.004, 0.005, kNy)};
+  ScaleFactors factors;
   BodyTerm term = make_membrane(kSection);
 
   explicit Cells(const std::function<double(int)>& factor) {
@@ -55,13 +56,13 @@ struct Cells {
   }
 };
 
-/// From void to material, and all that is between.
+/// Returns factors from void (1e-4) to full material (1), increasing with the number of the cell.
 double spread(int c) { return std::pow(10.0, -4 + 4.0 * c / (kNx * kNy - 1)); }
 
 TEST(Cells, AtRestHaveTheStiffnessOfTheDesignProblem) {
   const Cells cells(spread);
   const auto k = q4_stiffness(kSection, 0.0025, 0.003);
-  // Corners: around the cell here, column by column there.
+  // The corners are numbered around the cell in q4_stiffness() and column by column in the element.
   constexpr std::array<std::array<int, 2>, 4> kAround = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
   const auto there = [&](int corner) {
     for (size_t a = 0; a < 4; ++a)
@@ -117,7 +118,7 @@ TEST(Cells, AreTheSameAloneAndSideBySide) {
   const Cells cells(spread);
   const MatrixXd q = testing::random_shape(cells.plate, 0.15, 4);
   for (int first = 0; first < kNx * kNy; first += kLanes) {
-    Lanes all[8] = {}, force[8] = {}, tangent[64] = {};
+    Pack all[8] = {}, force[8] = {}, tangent[64] = {};
     Batch batch{.first = first,
                 .count = std::min(kLanes, kNx * kNy - first),
                 .n_shapes = 4,
@@ -144,15 +145,15 @@ TEST(Cells, AreTheSameAloneAndSideBySide) {
   }
 }
 
-// Squeezed along m to 0.3 of its length: a cell of St. Venant and Kirchhoff gives way below 1/√3,
-// one that is void does not.
+// A cell is compressed along m to 0.3 of its length: the St. Venant-Kirchhoff material becomes
+// unstable below 1/√3, a void cell does not.
 TEST(Cells, ThatAreVoidDoNotTurnInsideOut) {
   for (const double factor : {1.0, 1e-4}) {
     const Cells cells([&](int) { return factor; });
     MatrixXd q = cells.plate.reference();
     q.col(0) *= 0.3;
     Eigen::Matrix<double, 8, 1> squeeze = Eigen::Matrix<double, 8, 1>::Zero();
-    squeeze[2] = squeeze[4] = 1;  // corners at the far end along m
+    squeeze[2] = squeeze[4] = 1;  // the corners at the far end along m
     const LocalTangent k = cells.tangent(0, cells.local(0, q));
     const double along = squeeze.dot(k * squeeze) / factor;
     if (factor == 1.0) {

@@ -1,5 +1,6 @@
-// The rows, rates and tangents of gears and paths against differences along straight lines of
-// states, the ratio of a gear over whole turns, and the foot and the checks of a plane curve.
+// Shows that rows, rates and tangents of gears and paths agree with differences at random states,
+// that a gear keeps its ratio over whole turns, and that the foot point and the checks of a plane
+// curve are right.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,16 +39,16 @@ class GearAndPath : public ::testing::Test {
     return out;
   }
 
-  /// What derivatives are compared with, and how well.
+  /// Settings of the comparison with differences.
   struct Differences {
-    double spread;     ///< of the random states
-    double h;          ///< of the differences, whose truncation is h⁴ f⁽⁵⁾ / 30
-    double tolerance;  ///< of first derivatives: with f⁽⁵⁾ up to 300 of a gear, 3e5 of a path
-    double period;     ///< of the value, which is known but for multiples of it; 0: none
+    double spread;     ///< size of the random changes of the states
+    double h;          ///< step of the differences, whose truncation is h⁴ f⁽⁵⁾ / 30
+    double tolerance;  ///< for first derivatives; f⁽⁵⁾ is up to 300 for a gear, 3e5 for a path
+    double period;     ///< the value is known up to multiples of the period; 0: not periodic
   };
 
-  /// Compares rates, accelerations and the tangent at random states near the start with
-  /// differences.
+  /// Compares rates, accelerations and the tangent with differences at random states near the
+  /// start.
   void expect_derivatives(const Differences& by) {
     ASSERT_EQ(joint().size(), 1);
     const Eigen::Index n = start_.size();
@@ -77,8 +78,8 @@ class GearAndPath : public ::testing::Test {
   VectorXd start_;
 };
 
-// Away from the root values jump between those of neighbouring teeth, 2 π/5 apart: 14 : 35 is 2 :
-// 5.
+// Away from zero the value jumps between neighbouring teeth, which are 2 π/5 apart because 14 : 35
+// is 2 : 5.
 TEST_F(GearAndPath, GearHasTheDerivativesOfItsRow) {
   join(make_gear("mesh", {"one"}, {"two"}, {14, 35, false, 0.3, -1.1}));
   expect_derivatives({0.4, 1e-2, 1e-7, kTurn / 5});
@@ -117,7 +118,8 @@ TEST_F(GearAndPath, PathHasTheDerivativesOfItsRow) {
   expect_derivatives({0.05, 1e-3, 1e-8, 0});
 }
 
-// The signed distance from a circle, positive inside, where the normal of the tangent points.
+// The expected value is the signed distance from the circle, positive inside, where the normal
+// points.
 TEST_F(GearAndPath, PathIsTheDistanceFromItsCurve) {
   join(make_path("wire", {}, {"two"}, circle({0.2, 0}, 0.5)));
   for (const Vec2& at : {Vec2(0.3, 0.5), Vec2(-0.4, 0.1), Vec2(0.2, -0.45), Vec2(0.7, 0)}) {
@@ -143,10 +145,11 @@ TEST(PlaneCurve, KnowsItsCornersAndCrossings) {
   EXPECT_NEAR(round.length(), kTurn, 1e-3);
   EXPECT_LT(round.corner(), 0);
   EXPECT_FALSE(round.crosses_itself());
-  const auto wave = [](double pulsation) {
-    return [pulsation](double s) {
-      return Motion{std::sin(pulsation * s), pulsation * std::cos(pulsation * s),
-                    -pulsation * pulsation * std::sin(pulsation * s)};
+  const auto wave = [](double angular_frequency) {
+    return [angular_frequency](double s) {
+      return Motion{std::sin(angular_frequency * s),
+                    angular_frequency * std::cos(angular_frequency * s),
+                    -angular_frequency * angular_frequency * std::sin(angular_frequency * s)};
     };
   };
   EXPECT_TRUE(PlaneCurve(wave(2), wave(1), kTurn).crosses_itself());  // a figure of eight

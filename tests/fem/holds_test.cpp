@@ -1,6 +1,6 @@
-// Shows what holds hold: rows are the named entries, corners once; edges of a plate in space kept
-// as a clamp, a support and a plane of symmetry do (by what stays free); pins in space and of
-// single components against differences.
+// Shows that held nodes constrain the right unknowns: their rows are the named entries without
+// repetition at corners; clamps, supports and symmetry planes at the edges of a plate in space
+// admit the right fields; pins in space and of single components agree with differences.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -15,7 +15,7 @@ namespace {
 using testing::ShapeSet;
 using testing::SpacePlate;
 
-/// All rows of a joint at q.
+/// Returns all rows of a joint at q.
 ConstraintRows rows(const Joint& joint, const VectorXd& q, double t = 0) {
   ConstraintRows out;
   joint.evaluate(t, q, VectorXd::Zero(q.size()), out);
@@ -30,14 +30,14 @@ MatrixXd dense(const ConstraintRows& r, Eigen::Index n) {
 
 struct Bound {
   Bound(ShapeSet shapes, std::unique_ptr<Joint> made, int dim = 3)
-      : plate(dim, shapes, testing::even_lines(0, 1, 2), testing::even_lines(0, 1, 2)),
+      : plate(dim, shapes, testing::uniform_lines(0, 1, 2), testing::uniform_lines(0, 1, 2)),
         joint(std::move(made)) {
     const BodyView view{&name, &plate, 0};
     joint->bind({&view, 1});
     const Eigen::Matrix<double, -1, -1, Eigen::RowMajor> reference = plate.reference();
     q = Eigen::Map<const VectorXd>(reference.data(), reference.size());
   }
-  /// Unknowns of a field and its derivatives.
+  /// Returns the unknowns that interpolate a field and its derivatives.
   VectorXd field(const std::function<Vec3(double, double)>& f) const {
     VectorXd out(q.size());
     const double h = 0.01;
@@ -66,7 +66,7 @@ struct Bound {
   VectorXd q;
 };
 
-// Every edge, both shape sets: the undeformed plate fits, and no row is there twice.
+// For every edge and both shape sets the rows vanish on the undeformed plate and are independent.
 TEST(Holds, EdgesFitTheUndeformedPlateAndAreIndependent) {
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16}) {
     std::vector<Held> all;
@@ -81,8 +81,8 @@ TEST(Holds, EdgesFitTheUndeformedPlateAndAreIndependent) {
   }
 }
 
-// Fields that a condition of the continuum admits or forbids. Differences are exact for these
-// polynomials up to round-off 1e-16 / 1e-4.
+// Each field must be admitted or excluded as the boundary condition of the continuum requires.
+// Differences are exact for these polynomials except for round-off of 1e-16 / 1e-4.
 TEST(Holds, EdgesAdmitWhatTheirConditionAdmits) {
   struct Field {
     std::string what;
@@ -107,7 +107,7 @@ TEST(Holds, EdgesAdmitWhatTheirConditionAdmits) {
     const std::string edge = side ? "side_low" : "root";
     const auto check = [&](const std::vector<Held>& held, const Field& f, bool admitted) {
       const Bound b(ShapeSet::h16, make_hold("h", "plate", held));
-      const auto turned = [&](double m, double n) -> Vec3 {  // m and n, x and y change places
+      const auto turned = [&](double m, double n) -> Vec3 {  // exchanges m with n and x with y
         const Vec3 u = f.u(n, m);
         return {u.y(), u.x(), u.z()};
       };
@@ -128,12 +128,12 @@ TEST(Holds, TakePointsBoxesAndValues) {
   const Bound point(
       ShapeSet::h16,
       make_hold("h", "plate",
-                {{HoldPlace::at({0.5, 1}), NodeVector::r, {2}, testing::vector(0, 0, 0.25)}}));
+                {{HoldLocation::at({0.5, 1}), NodeVector::r, {2}, testing::vector(0, 0, 0.25)}}));
   const ConstraintRows r = rows(*point.joint, point.q);
   ASSERT_EQ(r.value.size(), 1);
   EXPECT_EQ(r.value[0], -0.25);
   ASSERT_EQ(r.jacobian.size(), 1u);
-  // Node (1, 2) of 3 x 3, four vectors of three entries each.
+  // This is node (1, 2) of 3 x 3; each node has four vectors of three entries.
   EXPECT_EQ(r.jacobian[0].col(), 3 * 4 * 5 + 2);
   const Bound box(
       ShapeSet::h16,
@@ -156,13 +156,15 @@ TEST(Holds, SayWhatIsWrong) {
   const auto has = [](const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_TRUE(has(message({{HoldPlace::at({0.4, 1}), NodeVector::r, {2}, {}}}), "no node"));
-  EXPECT_TRUE(has(message({{HoldPlace::at({0, 0}), NodeVector::r, {3}, {}}}), "component 3"));
-  EXPECT_TRUE(has(message({{HoldPlace::at({0, 0}), NodeVector::r, {}, {}}}), "holds nothing"));
+  EXPECT_TRUE(has(message({{HoldLocation::at({0.4, 1}), NodeVector::r, {2}, {}}}), "no node"));
+  EXPECT_TRUE(has(message({{HoldLocation::at({0, 0}), NodeVector::r, {3}, {}}}), "component 3"));
+  EXPECT_TRUE(
+      has(message({{HoldLocation::at({0, 0}), NodeVector::r, {}, {}}}), "no component is fixed"));
   EXPECT_TRUE(has(message({{{.edge = "top"}, NodeVector::r, {2}, {}}}), "'side_high'"));
-  EXPECT_TRUE(has(message({{HoldPlace::at({0, 0}), NodeVector::r, {2}, {}},
-                           {HoldPlace::at({0, 0}), NodeVector::r, {2}, testing::vector(0, 0, 1)}}),
-                  "two values"));
+  EXPECT_TRUE(
+      has(message({{HoldLocation::at({0, 0}), NodeVector::r, {2}, {}},
+                   {HoldLocation::at({0, 0}), NodeVector::r, {2}, testing::vector(0, 0, 1)}}),
+          "two values"));
   const std::string name = "plate";
   const AncfPlate moving = testing::swinging_plate(ShapeSet::h16);
   const BodyView view{&name, &moving, 0};
@@ -171,7 +173,8 @@ TEST(Holds, SayWhatIsWrong) {
       Error);
 }
 
-// A pin in space along a path: rates and accelerations of its rows by differences of its values.
+// Rates and accelerations of the rows of a pin in space along a path must equal differences of its
+// values.
 TEST(Pins, FollowTheirPathInSpace) {
   const auto path = [](double t) {
     return std::vector<Motion>{{std::sin(t), std::cos(t), -std::sin(t)}, {t * t, 2 * t, 2}};
@@ -189,7 +192,7 @@ TEST(Pins, FollowTheirPathInSpace) {
     const ConstraintRows r = rows(*b.joint, b.q, 0.4);
     EXPECT_LT((r.rate - testing::first_difference(value, 1e-2)).norm(), 1e-9);
     EXPECT_LT((-r.acceleration - testing::second_difference(value, 1e-2)).norm(), 1e-8);
-    const Vec3 at(0.3, 0.7, 0);  // of the undeformed plate
+    const Vec3 at(0.3, 0.7, 0);  // position on the undeformed plate
     const std::vector<Motion> target = drive(0.4);
     for (int i = 0; i < b.joint->size(); ++i)
       EXPECT_NEAR(r.value[i], at[all ? i : 2 - 2 * i] - target[static_cast<size_t>(i)].value,

@@ -1,6 +1,6 @@
-// Shows that the rows of every joint are what they say: value, rate and right side of the
-// acceleration against differences in time along a random motion, while the hub accelerates; and
-// that the undeformed plate in its hub fulfils the weld.
+// Shows that the rows of every joint are right: value, rate and right side of the acceleration
+// agree with differences in time along a random motion while the hub accelerates, and the
+// undeformed plate in its hub satisfies the weld.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,8 +43,8 @@ std::unique_ptr<Joint> pin() { return make_pin("pin", "plate", {0.13, 0.02}, swi
 class EveryJoint : public ::testing::TestWithParam<JointCase> {
  protected:
   EveryJoint()
-      : plate(2, GetParam().shapes, testing::even_lines(0, 0.3, 2),
-              testing::even_lines(-0.05, 0.05, 2)),
+      : plate(2, GetParam().shapes, testing::uniform_lines(0, 0.3, 2),
+              testing::uniform_lines(-0.05, 0.05, 2)),
         joint(GetParam().make()) {
     const BodyView view{&body, &plate, kFirst};
     joint->bind({&view, 1});
@@ -62,7 +62,7 @@ class EveryJoint : public ::testing::TestWithParam<JointCase> {
     return out;
   }
 
-  static constexpr int kFirst = 6;  // unknowns of other bodies in front
+  static constexpr int kFirst = 6;  // number of the unknowns of other bodies in front
   std::string body = "plate";
   AncfPlate plate;
   std::unique_ptr<Joint> joint;
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
                       JointCase{"pin_h16", ShapeSet::h16, pin}),
     [](const auto& c) { return c.param.name; });
 
-// Truncation (1e-3 x 3)^4 / 30 and round-off 1e-16 / 1e-6 stay below 1e-9.
+// Truncation (1e-3 x 3)^4 / 30 and round-off 1e-16 / 1e-6 are below 1e-9.
 TEST_P(EveryJoint, RowsAreDifferencesAlongAMotion) {
   const double t = 0.6;
   const ConstraintRows r = rows(t);
@@ -101,11 +101,12 @@ TEST_P(EveryJoint, JacobianIsTheDerivativeByTheUnknowns) {
     joint->evaluate(t, motion->q(t) + by * direction, motion->v(t), out);
     return VectorXd(out.value);
   };
-  // Linear in q: exact.
+  // The rows are linear in q; therefore the difference is exact except for round-off.
   EXPECT_LT((times(r, direction) - first_difference(value, 0.1)).norm(), 1e-13);
 }
 
-// Rows of positions are distances: each held node that is moved by d adds |d|² to the squares.
+// Rows of positions are distances: if a held node is moved by d, its rows add |d|² to the sum of
+// squares.
 TEST_P(EveryJoint, UndeformedPlateInItsHubFitsTheWeld) {
   const FrameMotion hub = swinging_hub(0.6);
   Eigen::Matrix2d turn;
@@ -118,7 +119,7 @@ TEST_P(EveryJoint, UndeformedPlateInItsHubFitsTheWeld) {
   ConstraintRows r;
   joint->evaluate(0.6, q, q, r);
   const VectorXd before = r.value;
-  if (joint->size() > 2) {  // a pin is elsewhere
+  if (joint->size() > 2) {  // the point of the pin is not at the origin of the hub
     EXPECT_LT(before.cwiseAbs().maxCoeff(), 1e-15);
   }
   const Vec2 moved(0.03, -0.04);
@@ -138,7 +139,7 @@ TEST(Joints, NameWhatTheyDoNotFind) {
                Error);
   EXPECT_THROW(make_weld("w", "plate", "top", swinging_hub, WeldMode::edge)->bind({&view, 1}),
                Error);
-  // Inside an element whose lines move a pin would need the rates of the shape functions.
+  // Inside an element whose lines move, a pin would need the rates of the shape functions.
   EXPECT_THROW(make_pin("p", "plate", {0.15, 0}, swinging_hub)->bind({&view, 1}), Error);
 }
 

@@ -1,6 +1,7 @@
-// Shows that the matrix of a Newton step is the derivative of the whole residual, by unknowns and
-// multipliers, with flow, with nonlinear joints, and not symmetric when material flows; that bodies
-// add up; and that what does not exist is named.
+// Shows that the matrix of a Newton step is the derivative of the whole residual by unknowns and
+// multipliers, with material flow and nonlinear joints; that it is not symmetric when material
+// flows; that bodies are independent; that batches and threads do not change results; and that a
+// missing body is an error.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -19,7 +20,7 @@ namespace {
 using testing::first_difference;
 using testing::ShapeSet;
 
-/// |r|² = L² of the first two unknowns of a body: a constraint with curvature.
+/// The constraint |r|² = L² of the first two unknowns of a body, whose Hessian is not zero.
 class Distance final : public Joint {
  public:
   std::unique_ptr<Joint> clone() const override { return std::make_unique<Distance>(*this); }
@@ -45,7 +46,7 @@ class Distance final : public Joint {
   int first_ = 0;
 };
 
-/// A joint that holds nothing and counts how often it and its copies are bound.
+/// A joint without rows that counts how often it and its copies are bound.
 class Counting final : public Joint {
  public:
   explicit Counting(int& count) : count_(&count) {}
@@ -59,8 +60,8 @@ class Counting final : public Joint {
   int* count_;
 };
 
-// A chain of n bodies, each followed by its joint, is bound a few times, not n times: the list of
-// bodies moves once each time it doubles.
+// In a chain of n bodies, each followed by its joint, a joint is bound a few times on the average,
+// not n times, because the list of bodies moves only when its capacity doubles.
 TEST(Model, IsBoundAFewTimesWhileItGrows) {
   constexpr int kBodies = 512;
   Workspace model;
@@ -70,7 +71,7 @@ TEST(Model, IsBoundAFewTimesWhileItGrows) {
     model.add_joint(std::make_unique<Counting>(count));
     EXPECT_EQ(model.bodies().back().first_dof, 4 * i);
     EXPECT_EQ(model.n_dofs(), 4 * (i + 1));
-    EXPECT_EQ(model.n_constraints(), i + 1);  // unit axes
+    EXPECT_EQ(model.n_constraints(), i + 1);  // rows of the unit axes
     EXPECT_EQ(model.first_row(model.joints().size()), i + 1);
   }
   EXPECT_LT(count, 3 * kBodies);
@@ -99,7 +100,8 @@ std::vector<std::unique_ptr<Term>> all_terms(const PlaneSection& s) {
 class ModelTangent : public ::testing::TestWithParam<ShapeSet> {
  protected:
   ModelTangent() {
-    // Soft, so that inertia and membrane weigh alike in the matrix.
+    // The material is soft, so that inertia and membrane have entries of similar size in the
+    // matrix.
     const PlaneSection section{0.01, 1e3, 0.3, 2700};
     model.add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(GetParam())),
                    section, all_terms(section));
@@ -110,7 +112,7 @@ class ModelTangent : public ::testing::TestWithParam<ShapeSet> {
     x.lambda = VectorXd::Random(model.n_constraints());
     model.prepare(x.t);
   }
-  /// F + Φ_qᵀ λ and Φ.
+  /// Returns F + Φ_qᵀ λ and Φ.
   VectorXd residual(const State& y) {
     VectorXd out(model.n_dofs() + model.n_constraints()), force;
     Constraints c;
@@ -135,7 +137,8 @@ TEST_P(ModelTangent, IsTheDerivativeOfTheResidual) {
   model.kkt(x, c, w, 1, kkt);
   const int n = model.n_dofs();
   const VectorXd scales = model.scales();
-  // Cubic in q, linear in the rest: differences of order 4 are exact but for round-off.
+  // The residual is cubic in q and linear in the other unknowns; therefore differences of order 4
+  // are exact except for round-off.
   for (int column = 0; column < n + model.n_constraints(); ++column) {
     const double step = column < n ? 1e-3 / scales[column] : 1;
     const VectorXd exact = kkt.col(column);
@@ -155,7 +158,8 @@ TEST_P(ModelTangent, IsTheDerivativeOfTheResidual) {
     EXPECT_LT((exact - difference).cwiseAbs().maxCoeff(), 1e-8 * (1 + exact.cwiseAbs().maxCoeff()))
         << column;
   }
-  // The scale multiplies the equations of motion, not the constraints: times λ scaled in turn.
+  // The scale multiplies the equations of motion and not the constraints; the multipliers are
+  // divided by it.
   SparseMatrix scaled;
   model.kkt(x, c, w, 0.25, scaled);
   const MatrixXd a = MatrixXd(kkt), b = MatrixXd(scaled);
@@ -163,7 +167,7 @@ TEST_P(ModelTangent, IsTheDerivativeOfTheResidual) {
   EXPECT_EQ((a.bottomRows(model.n_constraints()) - b.bottomRows(model.n_constraints())).norm(), 0);
 }
 
-// 2 ∫ N Ṅᵀ is not symmetric: a solver that assumed symmetry would be wrong.
+// 2 ∫ N Ṅᵀ is not symmetric; therefore a solver for symmetric matrices would be wrong.
 TEST_P(ModelTangent, IsNotSymmetricWithMaterialFlow) {
   Constraints c;
   model.constraints(x, c);
@@ -177,7 +181,7 @@ TEST_P(ModelTangent, IsNotSymmetricWithMaterialFlow) {
   EXPECT_LT(asymmetry({0, 0, 1}), 1e-14);
 }
 
-// A second body changes nothing for the first one.
+// The forces of the first body do not depend on a second body.
 TEST(Model, BodiesAddUp) {
   const PlaneSection section{0.01, 1e8, 0.3, 2700};
   Workspace one, two;
@@ -204,19 +208,20 @@ TEST(Model, BodiesAddUp) {
   EXPECT_THROW(one.body("arm"), Error);
 }
 
-// Eight elements side by side are eight elements one by one: the sum over elements of what every
-// term says of each (round-off of another order of summation).
+// Forces and tangents of batches of eight elements must equal the sums over single elements and
+// terms, to the round-off of another order of summation.
 TEST(Model, BatchesAreTheirElements) {
   const PlaneSection section{0.01, 1e3, 0.3, 2700};
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
     for (const bool designed : {false, true}) {
       Workspace model;
-      // 15 elements: a batch that is not full, moving and standing elements in one batch.
-      std::vector<MaterialLine> lines = testing::even_lines(0.1, 0.45, 5);
+      // With 15 elements one batch is not full; one batch has elements with moving and with fixed
+      // lines.
+      std::vector<MaterialLine> lines = testing::uniform_lines(0.1, 0.45, 5);
       lines[0] = testing::swinging_line(0.1, 0.03, 2.1);
       Body& body = model.add_body(
           "plate",
-          std::make_unique<AncfPlate>(2, shapes, lines, testing::even_lines(-0.05, 0.07, 3)),
+          std::make_unique<AncfPlate>(2, shapes, lines, testing::uniform_lines(-0.05, 0.07, 3)),
           section, all_terms(section));
       if (designed) model.set_factors(body, testing::random_factors(3));
       const State x =
@@ -259,7 +264,8 @@ TEST(Model, BatchesAreTheirElements) {
     }
 }
 
-// Sums are made in the order of the colours, by however many threads. (Enough elements for two.)
+// Sums are made in the order of the colours for any number of threads. (There are enough elements
+// for two threads.)
 TEST(Model, ThreadsChangeNothing) {
   const PlaneSection section{0.01, 1e3, 0.3, 2700};
   Workspace model;
@@ -267,8 +273,8 @@ TEST(Model, ThreadsChangeNothing) {
   terms.push_back(make_inertia(section));
   terms.push_back(make_membrane(section));
   model.add_body("plate",
-                 std::make_unique<AncfPlate>(2, ShapeSet::h12, testing::even_lines(0, 1, 92),
-                                             testing::even_lines(0, 1, 92)),
+                 std::make_unique<AncfPlate>(2, ShapeSet::h12, testing::uniform_lines(0, 1, 92),
+                                             testing::uniform_lines(0, 1, 92)),
                  section, std::move(terms));
   const State x =
       testing::SmoothMotion(model.reference().q, 1e-3 * model.scales().cwiseInverse(), 2)
@@ -290,7 +296,7 @@ TEST(Model, ThreadsChangeNothing) {
   EXPECT_GT(force[0].norm(), 0);
 }
 
-// |r_m x r_n| of a plate stretched by (1.2, 0.5) everywhere.
+// The expected value is |r_m x r_n| of a plate that is stretched by (1.2, 0.5) everywhere.
 TEST(Model, SmallestAreaRatioIsThatOfTheMaterial) {
   const PlaneSection section{0.01, 1e8, 0.3, 2700};
   Workspace model;

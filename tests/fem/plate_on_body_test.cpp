@@ -1,5 +1,5 @@
-// Shows that rigid bodies and plates make one model: its matrix is the derivative of its residual,
-// and a plate on a driven body moves as one in a driven hub.
+// Shows that rigid bodies and plates form one model: its matrix is the derivative of its residual,
+// and a plate on a driven body moves like a plate in a driven hub.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,8 @@ namespace {
 using testing::first_difference;
 using testing::ShapeSet;
 
-/// A plate welded to a rigid body that hangs on a hinge, with a tip body on a revolute and springs.
+/// Returns a plate welded to a rigid body that has a hinge and an angle drive, or to a hub with
+/// that motion.
 Workspace plate_on_body(WeldMode mode, bool driven_hub = false) {
   Workspace model;
   PlaneSection soft{0.01, 1e8, 0.3, 2700};
@@ -31,10 +32,10 @@ Workspace plate_on_body(WeldMode mode, bool driven_hub = false) {
   std::vector<MaterialLine> lines = {
       testing::swinging_line(0, 0.02, 1.3), {0.1, {}}, {0.2, {}}, {0.3, {}}};
   const auto add_plate = [&] {
-    model.add_body(
-        "plate",
-        std::make_unique<AncfPlate>(2, ShapeSet::h16, lines, testing::even_lines(-0.05, 0.05, 1)),
-        soft, std::move(terms));
+    model.add_body("plate",
+                   std::make_unique<AncfPlate>(2, ShapeSet::h16, lines,
+                                               testing::uniform_lines(-0.05, 0.05, 1)),
+                   soft, std::move(terms));
   };
   const auto alpha = [](double t) { return Motion{0.8 * t * t, 1.6 * t, 1.6}; };
   if (driven_hub) {
@@ -65,7 +66,8 @@ Workspace plate_on_body(WeldMode mode, bool driven_hub = false) {
   return model;
 }
 
-// Both hubs turn alike, so both plates do: to what Newton's method leaves, over 40 steps.
+// Both hubs have the same rotation, so that both plates must have the same motion, to the
+// accumulated error of Newton's method over 40 steps.
 TEST(PlateOnABody, MovesAsInADrivenHub) {
   for (const WeldMode mode : {WeldMode::edge, WeldMode::direction, WeldMode::full}) {
     VectorXd plates[2], rates[2];
@@ -92,7 +94,7 @@ TEST(PlateOnABody, MovesAsInADrivenHub) {
   }
 }
 
-// What the weld does to the plate, the hub gets back: forces add to zero, moments about any point.
+// The weld acts on plate and hub with opposite forces and opposite moments about any point.
 TEST(PlateOnABody, WeldActsAndReacts) {
   for (const WeldMode mode : {WeldMode::edge, WeldMode::direction, WeldMode::full}) {
     Workspace model = plate_on_body(mode);
@@ -109,14 +111,15 @@ TEST(PlateOnABody, WeldActsAndReacts) {
     EXPECT_GT(on_plate.force.norm(), 1);
     EXPECT_LT((on_plate.force + on_hub.force).norm(), 1e-12 * on_plate.force.norm());
     EXPECT_LT((on_plate.moment + on_hub.moment).norm(), 1e-12 * on_plate.moment.norm());
-    // The motor gives its moment to the hub, whatever point it is taken about, and no force.
+    // The drive acts on the hub with a moment that does not depend on the reference point, and
+    // without a force.
     const Wrench motor = model.joint_wrench(3, "hub", {-2, 1, 0}, x);
     EXPECT_NEAR(motor.moment.z(), x.lambda[model.first_row(3)], 1e-9);
     EXPECT_LT(motor.force.norm(), 1e-12);
   }
 }
 
-// The same while the plate grows out of its hub, with an insertion on the way.
+// Both plates must also agree while the plate slides out of its hub and one line is inserted.
 TEST(PlateOnABody, GrowsAsOutOfADrivenHub) {
   testing::RotatingPlate plate;
   plate.speed = 1;
@@ -128,7 +131,7 @@ TEST(PlateOnABody, GrowsAsOutOfADrivenHub) {
   for (const bool driven : {false, true}) {
     testing::Scene scene = testing::make_scene(plate);
     if (!driven) {
-      // The same plate in front of a rigid hub that turns.
+      // The plate is welded to a rotating rigid hub instead.
       Workspace model;
       Body& old = scene.model.bodies()[0];
       std::vector<std::unique_ptr<Term>> terms;
@@ -148,7 +151,7 @@ TEST(PlateOnABody, GrowsAsOutOfADrivenHub) {
     settings.start = Start::rigid;
     settings.alpha.tolerance = 1e-14;
     const MotionResult result =
-        integrate(scene.model, scene.growths, settings, [](const MotionStep&) {});
+        integrate(scene.model, scene.moving_roots, settings, [](const MotionStep&) {});
     events = result.events.size();
     const Body& body = scene.model.body("plate");
     plates[driven] = result.final.q.segment(body.first_dof, body.n_dofs());
@@ -160,21 +163,21 @@ TEST(PlateOnABody, GrowsAsOutOfADrivenHub) {
   std::cout << "plates on body and in driven hub are " << apart << " apart\n";
   EXPECT_LT(apart, 1e-10);
 }
-/// Everything there is, in one model; nothing of it fits together.
+/// Returns a model with joints and force elements of many kinds; its constraints are not satisfied.
 Workspace zoo() {
   Workspace model = plate_on_body(WeldMode::direction);
   testing::add_rigid(model, "tip", {0.5, {0.1, -0.2}, 0.04}, Vec2(0, -9.81));
   testing::add_rigid(model, "slide", {0.7, {0, 0.1}, 0.1});
-  const MarkerPlace tip{.body = "tip", .point = {0.1, 0.1}, .angle = 0.4};
+  const MarkerLocation tip{.body = "tip", .point = {0.1, 0.1}, .angle = 0.4};
   model.add_joint(make_revolute("r", {.body = "plate", .point = {0.3, 0.05}}, tip));
   model.add_joint(make_slider("s", {.body = "hub", .point = {0, 0.2}}, {.body = "slide"}));
   model.add_joint(make_distance("d", tip, {.body = "slide", .point = {0.2, 0}}, [](double) {
     return Motion{0.4, 0, 0};
   }));
-  model.add_link(make_spring("k", tip, {.point = {1, 1}}, {20, 3, 0.5}));
-  model.add_link(make_torsion_spring("t", tip, {.body = "slide"}, {2, 0.3, 0.1}));
-  model.add_link(make_torque("m", {.body = "slide"}, 0.7));
-  model.add_link(make_point_force("f", {.body = "plate", .point = {0.25, 0}}, Vec2(1, 2)));
+  model.add_force_element(make_spring("k", tip, {.point = {1, 1}}, {20, 3, 0.5}));
+  model.add_force_element(make_torsion_spring("t", tip, {.body = "slide"}, {2, 0.3, 0.1}));
+  model.add_force_element(make_torque("m", {.body = "slide"}, 0.7));
+  model.add_force_element(make_point_force("f", {.body = "plate", .point = {0.25, 0}}, Vec2(1, 2)));
   return model;
 }
 
@@ -216,7 +219,7 @@ TEST(Zoo, MatrixIsTheDerivativeOfTheResidual) {
   EXPECT_LT((kkt * right - difference).norm(), 1e-8 * difference.norm());
 }
 
-// All bodies carried along by one velocity: the momentum is that times their mass.
+// All bodies move with one velocity; the momentum is this velocity times their mass.
 TEST(Zoo, MomentumIsThatOfItsBodies) {
   Workspace model = zoo();
   model.prepare(0.0);
@@ -228,7 +231,7 @@ TEST(Zoo, MomentumIsThatOfItsBodies) {
       if (b.element->is_position(k)) x.v.segment<2>(b.first_dof + 2 * k) = velocity;
   const PlaneSection s{0.01, 1e8, 0.3, 2700};
   const double mass = 2 + 0.5 + 0.7 + s.density * s.thickness * 0.3 * 0.1;
-  // The root line swings: material that stands in the world flows through nodes at rest.
+  // The root line oscillates, so that material flows through nodes without velocity.
   const Vec3 all = model.momentum(x);
   State still = x;
   still.v.setZero();

@@ -1,5 +1,5 @@
-// Shows that mass, weight and momentum of a rigid body are those of its points, that joint forces
-// and their wrenches are the reactions of mechanics.
+// Shows that mass, weight and momentum of a rigid body equal those of its points, and that joint
+// forces and their wrenches are the reactions of mechanics.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -37,13 +37,14 @@ struct Points {
   }
 };
 
-// Energies and momentum of four point masses, whatever q and q̇ (u of any length, too).
+// Energies and momentum must equal those of four point masses for any q and q̇ (u of any length,
+// too).
 TEST(RigidBody, IsTheSumOfItsPoints) {
   const Points points;
   const VectorXd given = Vec2(1.2, -9.81);
   Workspace model;
   testing::add_rigid(model, "body", points.section(), given);
-  const Vec2 gravity = testing::disturbed(given);  // as add_rigid() takes it
+  const Vec2 gravity = testing::disturbed(given);  // add_rigid() disturbs gravity, too
   model.prepare(0.0);
   State x = model.reference();
   x.q.setRandom();
@@ -64,7 +65,7 @@ TEST(RigidBody, IsTheSumOfItsPoints) {
   EXPECT_NEAR(e.potential, potential, 1e-13);
   EXPECT_LT((Vec2(model.momentum(x).head<2>()) - momentum).norm(), 1e-14);
 
-  // The force is M q̈ + V_q, M the second derivative of T.
+  // The force is M q̈ + V_q, where M is the second derivative of T.
   const VectorXd direction = VectorXd::Random(4);
   const auto energy_by_v = [&](double by) {
     State y = x;
@@ -84,22 +85,23 @@ TEST(RigidBody, IsTheSumOfItsPoints) {
   EXPECT_EQ(model.energies(x).potential, 0);
 }
 
-// A place that slides along a ray of a turning body: polar coordinates.
-TEST(PlaceMotion, OfAShiftedPlaceIsThatOfPolarCoordinates) {
+// A marker that moves along a ray of a rotating body has the velocity and acceleration of polar
+// coordinates.
+TEST(LocationMotion, OfAShiftedLocationIsThatOfPolarCoordinates) {
   Workspace model;
   testing::add_rigid(model, "body", {.mass = 1, .inertia = 1});
   State x = model.reference();
   x.t = 0.7;
   testing::put(model, "body", {{0, 0}, 0.4, {0, 0}, 1.3, {0, 0}, -0.6}, x);
   const auto along = [](double t) { return Motion{t * t, 2 * t, 2}; };
-  const PlaceMotion p = model.place_motion({.body = "body", .angle = 0.9, .along = along}, x);
+  const LocationMotion p = model.location_motion({.body = "body", .angle = 0.9, .along = along}, x);
   const double s = 0.49, s_t = 1.4, s_tt = 2, w = 1.3, w_t = -0.6;
   const Vec2 e(std::cos(1.3), std::sin(1.3)), n(-e.y(), e.x());
   EXPECT_LT((p.position - s * e).norm(), 1e-15);
   EXPECT_LT((p.axis - e).norm(), 1e-15);
   EXPECT_LT((p.velocity - s_t * e - s * w * n).norm(), 1e-15);
   EXPECT_LT((p.acceleration - (s_tt - s * w * w) * e - (s * w_t + 2 * s_t * w) * n).norm(), 1e-14);
-  EXPECT_THROW(model.place_motion({.body = "arm"}, x), Error);
+  EXPECT_THROW(model.location_motion({.body = "arm"}, x), Error);
 }
 
 TEST(RigidBody, RefusesWhatItIsNot) {
@@ -114,18 +116,18 @@ TEST(RigidBody, RefusesWhatItIsNot) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_rigid_inertia({.mass = 1, .inertia = 1}));
   model.add_body("plate",
-                 std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::even_lines(0, 1, 1),
-                                             testing::even_lines(0, 1, 1)),
+                 std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::uniform_lines(0, 1, 1),
+                                             testing::uniform_lines(0, 1, 1)),
                  {}, std::move(terms));
   EXPECT_THROW(model.prepare(0.0), Error);
   Workspace bodies;
   testing::add_rigid(bodies, "body", {.mass = 1, .inertia = 1});
   EXPECT_EQ(bodies.smallest_area_ratio(bodies.reference()),
-            std::numeric_limits<double>::infinity());  // none is sampled
+            std::numeric_limits<double>::infinity());  // a rigid body has no sampled area
 }
 
-// A spinning body whose hinge is not its point r: reaction = m (r̈_c - g), no moment about the
-// hinge, about r that of its lever.
+// A rotating body has a hinge that is not its point r: the reaction is m (r̈_c - g), it has no
+// moment about the hinge, and its moment about r is force times lever.
 TEST(JointForce, OfAHingeIsTheReaction) {
   const RigidSection section{3, {0.4, -0.1}, 0.2};
   const Vec2 gravity(0, -9.81), hinge(-0.3, 0.2);
@@ -145,7 +147,7 @@ TEST(JointForce, OfAHingeIsTheReaction) {
   GeneralizedAlpha alpha(model, {});
   alpha.make_consistent(x);
 
-  // θ̈ = moment of the weight about the hinge / inertia about it.
+  // θ̈ = moment of the weight about the hinge / moment of inertia about the hinge.
   const double about_hinge = section.inertia + section.mass * lever.squaredNorm();
   const double spin =
       section.mass * (lever.x() * gravity.y() - lever.y() * gravity.x()) / about_hinge;
@@ -157,25 +159,25 @@ TEST(JointForce, OfAHingeIsTheReaction) {
   const Vec2 arm = Vec2(1, 2) - r;
   EXPECT_NEAR(model.joint_wrench(1, "body", {r.x(), r.y(), 0}, x).moment.z(),
               arm.x() * reaction.y() - arm.y() * reaction.x(), 1e-12);
-  // The unit axis does no work on motions of the body.
+  // The constraint of the unit axis does no work in motions of the body.
   const Wrench none = model.joint_wrench(0, "body", {5, 6, 0}, x);
   EXPECT_LT(none.force.norm() + none.moment.norm(), 1e-12);
   EXPECT_THROW(model.joint_wrench(1, "arm", {0, 0, 0}, x), Error);
 }
 
-// A body on two springs of one direction, under its weight: k (l - l₀) each carries half.
+// A body hangs on two parallel springs; the force k (l - l₀) of each is half of the weight.
 TEST(Statics, OfABodyOnSprings) {
   Workspace model;
   testing::add_rigid(model, "body", {4, {0, -0.2}, 0.3}, Vec2(0, -9.81));
   for (const double x : {-0.5, 0.5})
-    model.add_link(
+    model.add_force_element(
         make_spring("spring", {.point = {x, 1}}, {.body = "body", .point = {x, 0}}, {300, 5, 0.9}));
   State x = model.reference();
   x.q[1] = 0.03;
   x.q.tail<2>() << std::cos(0.05), std::sin(0.05);
   model.prepare(x);
   StaticSettings settings;
-  settings.from = 0.5;  // without weight nothing holds it sideways
+  settings.from = 0.5;  // without weight the sideways position is not determined
   const StaticResult result = solve_static(model, x, settings);
   EXPECT_TRUE(result.completed);
   EXPECT_NEAR(x.q[1], 1 - (0.9 + 0.5 * 4 * 9.81 / 300), 1e-9);

@@ -1,6 +1,6 @@
 // Shows that Hermite functions interpolate, reproduce cubics and have the rates that differences in
 // time give at a fixed material point while both ends move; that Gauss rules have their degree; and
-// that the part-wise Lagrange weights are exact for polynomials.
+// that Lagrange weights over a fraction of an element are exact for polynomials.
 #include "fem/shapes/shape.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ Motion left(double t) {
 }
 Motion right(double t) { return {0.9 - 0.05 * t * t, -0.1 * t, -0.1}; }
 
-/// Polynomials (rows of coefficients) at s.
+/// Returns polynomials (rows of coefficients) at s.
 Vector4d at(const Eigen::Matrix4d& rows, double s) {
   return rows * Vector4d(1, s, s * s, s * s * s);
 }
@@ -45,14 +45,14 @@ TEST(Hermite, InterpolatesValueAndSlopeAtItsEnds) {
   EXPECT_LT((ends - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-// Four conditions determine a cubic: round-off only.
+// Four conditions determine a cubic; therefore only round-off remains.
 TEST(Hermite, ReproducesCubics) {
   for (const double x : {0.4, 0.52, 0.77})
     EXPECT_NEAR(values(0.4, x).dot(nodal_values(0.4)), cubic(x), 1e-14);
 }
 
-// Differences of order 4 with step 1e-3: truncation h^4 f^(6) / 90 and round-off 30 eps / (12 h^2)
-// are both near 1e-9 of the second derivative.
+// With differences of order 4 and step 1e-3, truncation h^4 f^(6) / 90 and round-off 30 eps / (12
+// h^2) are both near 1e-9 of the second derivative.
 TEST(Hermite, RatesAreThoseAtAFixedMaterialPoint) {
   const double t = 0.4;
   const Hermite h(left(t), right(t));
@@ -61,7 +61,7 @@ TEST(Hermite, RatesAreThoseAtAFixedMaterialPoint) {
     const auto moved = [&](double dt) { return values(t + dt, x); };
     EXPECT_LT((at(h.rate, s) - testing::first_difference(moved, 1e-3)).norm(), 1e-10);
     EXPECT_LT((at(h.acceleration, s) - testing::second_difference(moved, 1e-3)).norm(), 2e-8);
-    // The slope's rate: the material derivative commutes with the one in time at fixed X.
+    // The rate of the slope: the derivative by X commutes with the time derivative at fixed X.
     const auto slope = [&](double dx) {
       const double at_x = (x + dx - h.start) / h.length;
       return at(h.rate, at_x);
@@ -72,8 +72,8 @@ TEST(Hermite, RatesAreThoseAtAFixedMaterialPoint) {
   }
 }
 
-// A field that stands still in the material has no rate, though nodes move through it: the nodal
-// values change by the flow alone, and the two parts cancel.
+// A field that is fixed in the material has no rate, although the nodes move through it: the change
+// of the nodal values and the rate of the shape functions cancel.
 TEST(Hermite, MovingEndsDoNotMoveAFixedField) {
   const double t = 0.4;
   const Hermite h(left(t), right(t));
@@ -99,7 +99,7 @@ TEST(Gauss, IsExactToDegreeTwoNMinusOneAndNotFurther) {
       return sum;
     };
     for (int d = 0; d < 2 * n; ++d) EXPECT_NEAR(moment(d), 1.0 / (d + 1), 1e-15) << n << " " << d;
-    // Error for x^(2n): (n!)^4 / ((2n + 1) ((2n)!)^2), the remainder of Gauss's rule.
+    // The error for x^(2n) is (n!)^4 / ((2n + 1) ((2n)!)^2), the remainder of Gauss's rule.
     const double error =
         std::exp(4 * std::lgamma(n + 1.0) - 2 * std::lgamma(2 * n + 1.0)) / (2 * n + 1);
     EXPECT_NEAR(1.0 / (2 * n + 1) - moment(2 * n), error, 1e-15) << n;
@@ -108,8 +108,8 @@ TEST(Gauss, IsExactToDegreeTwoNMinusOneAndNotFurther) {
   EXPECT_THROW(gauss(17), Error);
 }
 
-// Lagrange polynomials through n points reproduce degree n - 1; their values inside [0, 1] stay
-// below 10 for Gauss points, so only round-off remains.
+// Lagrange polynomials through n points reproduce degree n - 1; at Gauss points their values inside
+// [0, 1] are below 10, so that only round-off remains.
 TEST(LagrangeIntegrals, AreExactForPolynomialsOverParts) {
   for (const int n : {1, 4, 7, 13, 16})
     for (const auto& [lower, upper] :

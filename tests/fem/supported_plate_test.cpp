@@ -1,6 +1,6 @@
-// Static analysis of a plate at rest with any supports and any domain: against Eigen's
-// factorization of a matrix assembled here, a patch state, beam theory and symmetry. The factor and
-// the order of the nodes behind it: against dense algebra, for patterns of any kind.
+// Shows that static analyses of plates with any supports and any domain agree with Eigen's
+// factorization of a matrix assembled here, a patch state, beam theory and symmetry; and that the
+// matrix factor and its order of the nodes agree with dense algebra for patterns of any kind.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ VectorXd random_factors(const Grid& g, unsigned seed) {
   return f;
 }
 
-/// K over the unknowns of a solver, assembled cell by cell.
+/// Returns K over the unknowns of a solver, assembled cell by cell.
 Eigen::SparseMatrix<double> assembled(const StaticSolver& solver, const VectorXd& factor,
                                       const std::vector<signed char>& outside) {
   const Grid& g = solver.grid();
@@ -61,7 +61,7 @@ Eigen::SparseMatrix<double> assembled(const StaticSolver& solver, const VectorXd
   return K;
 }
 
-// An L with a roller and a pin, stiffness at random, several loads.
+// The plate is L-shaped, with rollers and a pin, random stiffness and several loads.
 TEST(StaticSolver, AgreesWithAnotherFactorization) {
   const Grid g{.x0 = -1, .y0 = 2, .width = 1.2, .height = 1, .nx = 12, .ny = 10};
   std::vector<signed char> outside(static_cast<std::size_t>(g.n_cells()), 0);
@@ -87,7 +87,7 @@ TEST(StaticSolver, AgreesWithAnotherFactorization) {
   const MatrixXd expected = testing::solve(K, loads.transpose()).transpose();
   EXPECT_LT((u - expected).norm(), 1e-10 * expected.norm());
 
-  // Energies of all cells add up to u . K u, load by load and together.
+  // The energies of all cells add up to u . K u, for each load and for the weighted sum.
   MatrixXd each;
   VectorXd together;
   const Vec3 weights(0.5, 2, 1);
@@ -105,7 +105,8 @@ TEST(StaticSolver, AgreesWithAnotherFactorization) {
               1e-10 * y.row(1).squaredNorm());
 }
 
-// Pulled at both ends by its own stress, held against rigid motion only: the exact linear field.
+// A plate under uniform tension at both ends, held against rigid motion only, has the exact linear
+// field.
 TEST(StaticSolver, PassesThePatchTest) {
   const Grid g{.width = 2, .height = 1, .nx = 10, .ny = 6};
   StaticSolver solver(
@@ -113,7 +114,7 @@ TEST(StaticSolver, PassesThePatchTest) {
       std::vector<HeldUnknown>{{g.node(0, 0), 0}, {g.node(0, 0), 1}, {g.node(g.nx, 0), 1}});
   solver.factorize(VectorXd::Ones(g.n_cells()));
   MatrixXd u = MatrixXd::Zero(1, solver.n_unknowns());
-  const double pull = 7;  // [N] in all
+  const double pull = 7;  // total force [N]
   for (int j = 0; j <= g.ny; ++j) {
     const double share = pull / g.ny * (j == 0 || j == g.ny ? 0.5 : 1);
     u(0, solver.row(g.node(g.nx, j), 0)) += share;
@@ -132,7 +133,8 @@ TEST(StaticSolver, PassesThePatchTest) {
       }
 }
 
-// A slender cantilever under a tip force: Timoshenko's deflection, up to what the ends do.
+// A slender cantilever under a tip force has Timoshenko's deflection, except for the effects of the
+// ends, which the 0.5 % allow for.
 TEST(StaticSolver, CantileverDeflectsLikeABeam) {
   const Grid g{.width = 10, .height = 1, .nx = 200, .ny = 20};
   StaticSolver solver(g, kSection, clamp_left(g));
@@ -148,7 +150,7 @@ TEST(StaticSolver, CantileverDeflectsLikeABeam) {
   EXPECT_NEAR(u(0, tip), beam, 0.005 * beam);
 }
 
-// Half of a beam with a roller along the plane of symmetry moves like the half of the whole.
+// Half of a beam with rollers along the plane of symmetry moves like that half of the whole beam.
 TEST(StaticSolver, RollersAreASymmetry) {
   const Grid whole{.x0 = -2, .width = 4, .height = 1, .nx = 40, .ny = 10};
   const Grid half{.width = 2, .height = 1, .nx = 20, .ny = 10};
@@ -184,7 +186,8 @@ TEST(StaticSolver, RefusesPlatesThatFloat) {
   EXPECT_THROW(StaticSolver(g, kSection, std::vector<HeldUnknown>{{1000, 0}}), Error);
 }
 
-// Every node once, and the first cut, the column of nodes in the middle, behind both halves.
+// Every node occurs once, and the first separator, the column of nodes in the middle, comes after
+// both halves.
 TEST(DissectionOrder, IsAPermutationThatEndsWithTheFirstCut) {
   for (const Grid& g : {Grid{.nx = 13, .ny = 5}, Grid{.nx = 1, .ny = 1}, Grid{.nx = 7, .ny = 2}}) {
     const std::vector<int> order = dissection_order(g);
@@ -198,7 +201,7 @@ TEST(DissectionOrder, IsAPermutationThatEndsWithTheFirstCut) {
   }
 }
 
-/// Lower triangle of a symmetric matrix by compressed columns.
+/// Lower triangle of a symmetric matrix in compressed columns.
 struct Lower {
   std::vector<int> starts = {0}, rows;
   std::vector<double> values;
@@ -220,7 +223,8 @@ SupernodalFactor factor_of(const Lower& K) {
   return out;
 }
 
-/// A random pattern of n unknowns in three parts that do not touch; strong diagonal.
+/// Returns a matrix with a random pattern of n unknowns in three uncoupled groups and a dominant
+/// diagonal.
 MatrixXd scattered(int n, unsigned seed, double filling) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -233,8 +237,8 @@ MatrixXd scattered(int n, unsigned seed, double filling) {
   return K;
 }
 
-// Trees of eliminations of every shape: several roots, leaves, long chains, wide blocks (the dense
-// factor divides those above 16 columns). One load goes other ways than several.
+// The elimination trees have every shape: several roots, leaves, long chains, wide blocks (the
+// dense factor divides blocks above 16 columns). One load takes another code path than several.
 TEST(SupernodalFactor, AgreesWithADenseFactorizationForAnyPattern) {
   std::srand(11);
   for (unsigned seed = 1; seed <= 30; ++seed) {
@@ -248,7 +252,8 @@ TEST(SupernodalFactor, AgreesWithADenseFactorizationForAnyPattern) {
       MatrixXd x = loads;
       factor.forward(x, active);
       factor.backward(x, active);
-      // Diagonally dominant: the condition is small, so that only round-off of n terms is left.
+      // The matrix is diagonally dominant; therefore its condition number is small and only
+      // round-off of n terms remains.
       EXPECT_LT((x * K - loads).norm(), 1e-13 * K.norm() * x.norm()) << seed;
     }
   }
@@ -266,7 +271,7 @@ TEST(SupernodalFactor, NamesTheColumnWithoutAPositivePivotAndRecovers) {
   }
 }
 
-// The same matrix leads to the same bits, whatever was factored before.
+// Equal matrices must give equal bits, independent of previous factorizations.
 TEST(StaticSolver, RepeatsItselfBitForBit) {
   const Grid g{.width = 3, .height = 1, .nx = 30, .ny = 10};
   StaticSolver solver(g, kSection, clamp_left(g));
@@ -281,7 +286,8 @@ TEST(StaticSolver, RepeatsItselfBitForBit) {
   EXPECT_TRUE((first.array() == again.array()).all());
 }
 
-// On a mesh that is large enough for wide blocks, one load and several: K u = F with K by cells.
+// On a mesh that is large enough for wide blocks, one load and several loads must satisfy K u = F
+// with K assembled by cells.
 TEST(StaticSolver, SolvesWhatWasAskedOnALargerMesh) {
   const Grid g{.width = 2, .height = 1, .nx = 60, .ny = 31};
   StaticSolver solver(g, kSection, clamp_left(g));
@@ -293,7 +299,8 @@ TEST(StaticSolver, SolvesWhatWasAskedOnALargerMesh) {
     const MatrixXd loads = MatrixXd::Random(n_loads, solver.n_unknowns());
     MatrixXd u = loads;
     solver.solve(u);
-    // Backward stable: the residual is round-off of K u, whatever the condition of K.
+    // The solution is backward stable: the residual is round-off of K u for any condition number of
+    // K.
     EXPECT_LT((u * K - loads).norm(), 1e-14 * K.norm() * u.norm());
   }
 }

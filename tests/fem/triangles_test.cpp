@@ -1,4 +1,5 @@
-// Six-node triangles: patch test, bending without an error, clamps in one factor, recovered stress.
+// Shows that six-node triangles pass the patch test, represent bending exactly, serve all clamps by
+// one factor and have the right recovered stress.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ namespace {
 
 const PlaneSection kSteel{0.02, 200e9, 0.3, 7800};
 
-/// An irregular mesh of 3 x 1, finer at one corner, with lines across.
+/// Returns an irregular mesh of 3 x 1 that is finer at one corner, with the given lines across.
 PartMesh plate_mesh(std::span<const double> lines = {}) {
   const std::vector<Region> plate = {{{{0, 0}, {3, 0}, {3, 1}, {0, 1}}, {}}};
   std::vector<Segment> across;
@@ -27,7 +28,7 @@ PartMesh plate_mesh(std::span<const double> lines = {}) {
   return mesher.mesh();
 }
 
-/// Nodal values of a field (2 n_nodes).
+/// Returns the nodal values of a field (2 n_nodes).
 VectorXd nodal(const PartMesh& mesh, const std::function<Vec2(const Vec2&)>& field) {
   VectorXd out(2 * static_cast<Eigen::Index>(mesh.points.size()));
   for (Eigen::Index k = 0; k < out.size() / 2; ++k)
@@ -35,7 +36,7 @@ VectorXd nodal(const PartMesh& mesh, const std::function<Vec2(const Vec2&)>& fie
   return out;
 }
 
-/// K u of all triangles.
+/// Returns K u of all triangles.
 VectorXd forces_of(const PartMesh& mesh, const VectorXd& u) {
   VectorXd out = VectorXd::Zero(u.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -62,7 +63,7 @@ TEST(SixNodeTriangle, ShapesAreOneAtTheirNodesAndSumToOne) {
   for (const WeightedPoint& w : six_points()) EXPECT_NEAR(t6_shapes(w.at).sum(), 1, 1e-14);
 }
 
-// Factorials: ∫ L0^a L1^b L2^c dA = 2 A a! b! c! / (a + b + c + 2)!
+// The exact values contain factorials: ∫ L0^a L1^b L2^c dA = 2 A a! b! c! / (a + b + c + 2)!
 TEST(SixNodeTriangle, RulesIntegratePolynomialsExactly) {
   const auto factorial = [](int n) { return std::tgamma(n + 1.0); };
   for (int a = 0; a <= 4; ++a)
@@ -79,7 +80,7 @@ TEST(SixNodeTriangle, RulesIntegratePolynomialsExactly) {
     }
 }
 
-// Patch test: constant strain leaves no force inside, and the stress of Hooke's law everywhere.
+// Patch test: a constant strain gives no force on inner nodes.
 TEST(SixNodeTriangle, PassesThePatchTest) {
   const PartMesh mesh = plate_mesh();
   const VectorXd u = nodal(mesh, [](const Vec2& p) {
@@ -93,7 +94,8 @@ TEST(SixNodeTriangle, PassesThePatchTest) {
   }
 }
 
-// Pure bending, σ₁₁ = E κ (y - 1/2), is a quadratic field: no force inside, and none on the flanks.
+// Pure bending, σ₁₁ = E κ (y - 1/2), is a quadratic field; it has no force on inner nodes and on
+// the long edges.
 TEST(SixNodeTriangle, BendsWithoutAnError) {
   const PartMesh mesh = plate_mesh();
   const double nu = kSteel.poisson_ratio, curvature = 1e-3;
@@ -108,11 +110,11 @@ TEST(SixNodeTriangle, BendsWithoutAnError) {
     if (p.x() < 1e-9 || p.x() > 3 - 1e-9) continue;
     EXPECT_LE(f.segment<2>(2 * static_cast<Eigen::Index>(k)).norm(), 1e-12 * scale);
   }
-  // Twice the energy: E I κ² L.
+  // The expected value is two times the energy: E I κ² L.
   EXPECT_NEAR(u.dot(f), 200e9 * 0.02 / 12 * curvature * curvature * 3, 1e-10 * u.dot(f));
 }
 
-/// Unit tension at the right edge: (n_unknowns).
+/// Returns the nodal forces of unit tension at the right edge (n_unknowns).
 VectorXd tension(const TrianglePlate& plate) {
   const PartMesh& mesh = plate.mesh();
   VectorXd out = VectorXd::Zero(plate.n_unknowns());
@@ -153,7 +155,7 @@ TEST(TrianglePlate, TensionIsExactAndHasNoEstimatedError) {
   }
 }
 
-// One factor serves all clamps: each row is the plate that is held there by itself.
+// One factor serves all clamps: each row of results must equal the plate with that clamp alone.
 TEST(TrianglePlate, ClampsAreLeadingBlocks) {
   const std::vector<double> lines = {2.2, 1.5, 0.4, 0};
   const PartMesh mesh = plate_mesh(lines);

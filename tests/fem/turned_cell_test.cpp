@@ -1,5 +1,5 @@
-// Small strains in a turning frame: force and tangent by differences of the energy, no sum of
-// forces or moments, the linear limit.
+// Shows that a cell with small strains in a rotating frame has a force and a tangent equal to
+// differences of the energy, no resultant and no moment, and the right linear limit.
 
 #include "fem/terms/cells/turned_cell.h"
 
@@ -33,7 +33,8 @@ Six turned(const Six& p, double angle) {
   return out;
 }
 
-/// Symmetric, positive, and blind to an infinitesimal turn.
+/// Returns a symmetric, positive semidefinite matrix for which an infinitesimal rotation has no
+/// force.
 Square stiffness(unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -1,4 +1,4 @@
-// Shows that the kernels for all registers that this processor has give the same forces and
+// Shows that the vector kernels for all instruction sets of this processor give the same forces and
 // tangents to round-off.
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// The level of the processor again, whatever a test ends with.
+/// Restores the vector level of the processor at the end of a test.
 struct AllLevels {
   ~AllLevels() { limit_vector_level(VectorLevel::v4); }
 };
@@ -26,8 +26,8 @@ TEST_P(EveryLevel, GivesTheSameForcesAndTangents) {
   Workspace model;
   model.add_body(
       "plate",
-      std::make_unique<AncfPlate>(dim, AncfPlate::ShapeSet::h16, testing::even_lines(0, 1, 5),
-                                  testing::even_lines(0, 0.3, 2)),
+      std::make_unique<AncfPlate>(dim, AncfPlate::ShapeSet::h16, testing::uniform_lines(0, 1, 5),
+                                  testing::uniform_lines(0, 0.3, 2)),
       section, make_terms(names, section, {}));
   State x = model.reference();
   x.q += 0.02 * VectorXd::Random(x.q.size()).cwiseQuotient(model.scales());

@@ -1,6 +1,6 @@
-// A model is a value, and a work space knows what it is prepared for: copies share nothing that
-// changes, evaluations at any states in any order are those of a fresh work space, and two motions
-// of one model at the same time are those of one after the other, bit for bit.
+// Shows that a model is a value and that a work space is always prepared for its state: copies
+// share nothing that changes, evaluations at any states in any order equal those of a new work
+// space, and two simultaneous motions of one model equal consecutive motions bit for bit.
 #include "fem/model/workspace.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "fem/body_joints.h"
 #include "fem/dynamics/motion.h"
-#include "fem/dynamics/side_by_side.h"
+#include "fem/dynamics/parallel_jobs.h"
 #include "fem/terms.h"
 #include "tests/support/models.h"
 #include "tests/support/rigid_models.h"
@@ -20,8 +20,9 @@ namespace {
 
 using testing::RotatingPlate;
 
-/// A plate of designed material grows out of its hub and turns; a rigid arm hangs at its tip, with
-/// a spring to the ground: lines that move, a mesh that changes, a joint, links.
+/// Returns a plate with varying scale factors that slides out of its hub and rotates; a rigid arm
+/// is hinged to its tip, with a spring to the ground. It has moving lines, a mesh that changes, a
+/// joint and a force element.
 testing::Scene scene() {
   RotatingPlate p;
   p.speed = 0.5;
@@ -30,13 +31,13 @@ testing::Scene scene() {
   testing::Scene out = testing::make_scene(p);
   testing::add_rigid(out.model, "arm", {0.3, {0, -0.1}, 1e-3}, p.gravity);
   out.model.add_joint(make_revolute("hinge", {.body = "plate", .point = p.tip()}, {.body = "arm"}));
-  out.model.add_link(make_spring("spring", {.body = "arm", .point = {0, -0.2}},
-                                 {.point = {1, -0.5}}, {20, 0.1, 0.3}));
+  out.model.add_force_element(make_spring("spring", {.body = "arm", .point = {0, -0.2}},
+                                          {.point = {1, -0.5}}, {20, 0.1, 0.3}));
   return out;
 }
 
-/// Where the arm hangs at a time: below the tip, at rest with it.
-std::vector<Placed> placement(double t) {
+/// Returns the pose of the arm at a time: it hangs below the tip and has the velocity of the tip.
+std::vector<BodyPose> body_poses(double t) {
   RotatingPlate p;
   p.speed = 0.5;
   const double angle = p.omega * t, length = p.length + p.speed * t;
@@ -53,7 +54,7 @@ MotionSettings settings(double step) {
   out.end = 0.25;
   out.step = step;
   out.start = Start::rigid;
-  out.placement = placement;
+  out.body_poses = body_poses;
   out.keep = Keep::steps;
   return out;
 }
@@ -75,7 +76,7 @@ TEST(Workspaces, OfOneModelMoveInTwoThreadsAsOneAfterTheOther) {
   const Model& model = built.model;
   const auto move = [&](double step, Trajectory& out) {
     Workspace mine(model);
-    out = integrate(mine, built.growths, settings(step), [](const MotionStep&) {}).trajectory;
+    out = integrate(mine, built.moving_roots, settings(step), [](const MotionStep&) {}).trajectory;
   };
   Trajectory first, second, coarse;
   move(1e-3, first);
@@ -91,7 +92,7 @@ TEST(Workspaces, OfOneModelMoveInTwoThreadsAsOneAfterTheOther) {
   EXPECT_EQ(difference(beside, first), 0);
   EXPECT_EQ(difference(other, coarse), 0);
 
-  // What was copied is as it was.
+  // The model that was copied is unchanged.
   EXPECT_EQ(grid_of(model.bodies()[0]).n_m(), 10);
   move(1e-3, second);
   EXPECT_EQ(difference(second, first), 0);
@@ -108,7 +109,7 @@ TEST(Workspaces, ShareNothingWithTheModelTheyCopy) {
   Constraints rows;
   copy.constraints(x, rows);
   const VectorXd value = rows.value;
-  // The original gets another mesh, other material, other loads, and another time.
+  // The original gets another mesh, other material, other loads and another time.
   State y = x;
   built.model.prepare(0.2);
   change_mesh(built.model, built.model.bodies()[0], MeshChange::insertion, y);
@@ -119,13 +120,13 @@ TEST(Workspaces, ShareNothingWithTheModelTheyCopy) {
   EXPECT_EQ((after - before).norm(), 0);
   EXPECT_EQ((rows.value - value).norm(), 0);
   EXPECT_NE(built.model.n_dofs(), copy.n_dofs());
-  // A copy of a copy that has been used.
+  // This is a copy of a copy that has been used.
   Workspace again = copy;
   again.force(x, after);
   EXPECT_EQ((after - before).norm(), 0);
 }
 
-/// All that is evaluated at one state, in numbers.
+/// Returns all evaluations at one state in one vector.
 VectorXd all_of(Workspace& model, const State& x) {
   VectorXd f;
   Constraints c;
@@ -136,7 +137,7 @@ VectorXd all_of(Workspace& model, const State& x) {
   model.force(x, f);
   VectorXd out(f.size() + kkt.nonZeros() + 8);
   out << f, Eigen::Map<const VectorXd>(kkt.valuePtr(), kkt.nonZeros()), e.kinetic, e.strain,
-      e.potential, model.flow_power(x), model.link_power(x), model.smallest_area_ratio(x),
+      e.potential, model.flow_power(x), model.force_element_power(x), model.smallest_area_ratio(x),
       model.momentum(x).head<2>();
   return out;
 }
@@ -145,14 +146,14 @@ TEST(Workspaces, KnowWhatTheyArePreparedFor) {
   const testing::Scene built = scene();
   Workspace used = built.model;
   const testing::SmoothMotion motion(used.reference().q, 0.02 * used.scales().cwiseInverse(), 4);
-  Factors other;
+  ScaleFactors other;
   for (const double t : {0.0, 0.07, 0.02, 0.02, 0.09, 0.0}) {
     State x = motion.state(t);
     x.lambda = VectorXd::Ones(used.n_constraints());
     Workspace fresh = built.model;
     EXPECT_EQ((all_of(used, x) - all_of(fresh, x)).norm(), 0) << t;
   }
-  // Other material counts from the next evaluation on.
+  // A change of the material takes effect at the next evaluation.
   State x = motion.state(0.09);
   x.lambda = VectorXd::Ones(used.n_constraints());
   const double designed = used.energies(x).strain;
@@ -163,19 +164,19 @@ TEST(Workspaces, KnowWhatTheyArePreparedFor) {
   EXPECT_EQ(fresh.energies(x).strain, full);
 }
 
-// Free lines are where the state has them, whatever was evaluated before.
+// Free lines have the positions given by the state, whatever was evaluated before.
 TEST(Workspaces, FollowFreeLines) {
   RotatingPlate p;
   const auto build = [&] {
     std::vector<std::unique_ptr<Term>> terms;
     terms.push_back(make_inertia(p.section));
     terms.push_back(make_membrane(p.section));
-    std::vector<MaterialLine> m = testing::even_lines(0, 0.4, 4);
+    std::vector<MaterialLine> m = testing::uniform_lines(0, 0.4, 4);
     m[2].free = true;
     Workspace out;
     out.add_body("plate",
                  std::make_unique<AncfPlate>(2, testing::ShapeSet::h16, std::move(m),
-                                             testing::even_lines(0, 0.1, 2)),
+                                             testing::uniform_lines(0, 0.1, 2)),
                  p.section, std::move(terms));
     return out;
   };
@@ -202,8 +203,8 @@ TEST(SideBySide, DoesAllJobsOnce) {
     std::atomic<int> sum = 0;
     std::vector<Job> jobs;
     for (int k = 0; k < 7; ++k)
-      jobs.push_back({"job", static_cast<double>(k % 3), [&sum, k](const auto& go_on) {
-                        EXPECT_TRUE(go_on());
+      jobs.push_back({"job", static_cast<double>(k % 3), [&sum, k](const auto& keep_running) {
+                        EXPECT_TRUE(keep_running());
                         sum += 1 << k;
                       }});
     side_by_side(threads, jobs);
@@ -211,26 +212,26 @@ TEST(SideBySide, DoesAllJobsOnce) {
   }
 }
 
-// Those before it end, those behind it are told or never begun; its error says its name, as it does
-// one after the other.
+// Jobs before the failure end, and jobs after it are stopped or never begun. The error contains the
+// name of its job, as in consecutive execution.
 TEST(SideBySide, StopsWhatComesBehindAFailure) {
   for (const int threads : {1, 2, 3}) {
     std::atomic<bool> first_ended = false, last_was_told = true, others_told = false;
     const std::vector<Job> jobs = {
         {"first", 1,
-         [&](const auto& go_on) {
+         [&](const auto& keep_running) {
            for (int k = 0; k < 100; ++k) {
              std::this_thread::sleep_for(std::chrono::milliseconds(1));
-             if (!go_on()) others_told = true;
+             if (!keep_running()) others_told = true;
            }
            first_ended = true;
          }},
         {"second", 2, [&](const auto&) { throw Error::numerical("no convergence"); }},
-        {"last", 3, [&](const auto& go_on) {
+        {"last", 3, [&](const auto& keep_running) {
            last_was_told = false;
            for (int k = 0; k < 10000 && !last_was_told; ++k) {
              std::this_thread::sleep_for(std::chrono::milliseconds(1));
-             last_was_told = !go_on();
+             last_was_told = !keep_running();
            }
          }}};
     try {
@@ -246,13 +247,14 @@ TEST(SideBySide, StopsWhatComesBehindAFailure) {
   }
 }
 
-// By the matrix: F_q, F_v and M by turns, and all of them, with a line that moves and a damper.
+// The products are compared with the matrix for F_q, F_v and M separately and for their sum, with a
+// moving line and a damper.
 TEST(Workspace, TransposedProductsAreThoseOfTheMatrix) {
   testing::Scene s = scene();
   fem::Workspace& model = s.model;
   State x = testing::SmoothMotion(model.reference().q, 0.01 * model.scales().cwiseInverse(), 3)
                 .state(0.05);
-  x.lambda.setZero(model.n_constraints());  // no (Φ_qᵀ λ)_q
+  x.lambda.setZero(model.n_constraints());  // no contribution (Φ_qᵀ λ)_q
   const int n = model.n_dofs();
   const VectorXd psi = VectorXd::LinSpaced(n, -1, 1).array().sin();
   Constraints c;

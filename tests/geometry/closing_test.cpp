@@ -1,5 +1,5 @@
-// Fillets of outlines against areas and radii that are known, and area fractions of polygons
-// against the areas of shapes.
+// Shows that fillets of outlines have known areas and radii, and that area fractions of polygons
+// equal the areas of shapes.
 #include "geometry/parts/closing.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,8 @@ std::vector<Region> united(const std::vector<std::vector<Vec2>>& polygons) {
   return unite(polygons, kSheet, {});
 }
 
-/// Largest turn to the right of counterclockwise outlines within an arc of a length [rad].
+/// Returns the largest rotation to the right of counterclockwise outlines within an arc of given
+/// length [rad].
 double sharpest(const std::vector<Vec2>& ring, double arc) {
   double worst = 0;
   const size_t n = ring.size();
@@ -44,7 +45,7 @@ double sharpest(const std::vector<Vec2>& ring, double arc) {
   return -worst;
 }
 
-// A corner of 90 degrees is filled by r² (1 - π/4). All other vertices stay.
+// A corner of 90 degrees is filled by r² (1 - π/4). All other vertices do not move.
 TEST(Fillets, FillCorners) {
   const std::vector<Region> tee = united({box(-3, 0, 3, 1), box(-0.5, 1, 0.5, 4)});
   ASSERT_EQ(tee.size(), 1u);
@@ -58,7 +59,8 @@ TEST(Fillets, FillCorners) {
   EXPECT_GT(sharpest(tee[0].outer, 0.25), 1.5);
 }
 
-// Gaps below the diameter close, wider ones stay; a blade across a gap becomes a bridge.
+// Gaps narrower than the diameter are closed, wider ones remain; a thin wall across a gap becomes a
+// bridge.
 TEST(Fillets, CloseGapsAndThickenBlades) {
   const double r = 0.5;
   for (const double gap : {0.6, 1.4}) {
@@ -71,8 +73,8 @@ TEST(Fillets, CloseGapsAndThickenBlades) {
     else
       EXPECT_NEAR(added, 3 * r * r * (1 - std::numbers::pi / 4), 0.01);
   }
-  // Two discs 0.82 apart: the closing fills the gap with a blade of 0.024 in its middle, which
-  // becomes a bridge.
+  // For two discs at a distance of 0.82 the closing fills the gap with a wall of 0.024 in its
+  // middle, which becomes a bridge.
   const std::vector<Vec2> left = circle_within({-1.41, 0}, 1, 1e-4),
                           right = circle_within({1.41, 0}, 1, 1e-4);
   const std::vector<Region> discs = united({left, right});
@@ -80,13 +82,13 @@ TEST(Fillets, CloseGapsAndThickenBlades) {
   ASSERT_EQ(joined.size(), 1u);
   EXPECT_GT(smallest_features(joined, kSheet).solid, 0.9);
   EXPECT_LT(sharpest(joined[0].outer, 0.25 * r), 0.3);
-  // 0.92 apart the closing leaves the gap open.
+  // At a distance of 0.92 the closing leaves the gap open.
   const std::vector<Vec2> far = circle_within({1.51, 0}, 1, 1e-4);
   const std::vector<Region> apart = with_fillets(united({left, far}), kSheet, {r, 0.9}, 1e-4);
   EXPECT_EQ(apart.size(), 2u);
 }
 
-// Without a radius nothing changes. Holes stay holes.
+// Without a radius nothing changes. Holes are preserved.
 TEST(Fillets, KeepWhatTheyDoNotFill) {
   const std::vector<std::vector<Vec2>> outer = {box(0, 0, 6, 4)}, hole = {box(2, 1, 4, 3)};
   const std::vector<Region> plate = unite(outer, kSheet, hole);
@@ -100,8 +102,8 @@ TEST(Fillets, KeepWhatTheyDoNotFill) {
   EXPECT_TRUE(with_fillets({}, kSheet, {1, 1}, 1e-3).empty());
 }
 
-// Beside the corners of the domain, which the material nearly reaches, nothing is left: every piece
-// has material of the given outline.
+// The material nearly reaches the corners of the domain, and no fragments may remain there: every
+// connected region contains material of the given outline.
 TEST(Fillets, LeaveNoFlecksAtCorners) {
   const Region domain{box(0, -5, 53, 5), {}};
   for (int k = 0; k < 20; ++k) {
@@ -112,7 +114,7 @@ TEST(Fillets, LeaveNoFlecksAtCorners) {
   }
 }
 
-// A round end that reaches beyond the border by a tenth of the tolerance stays attached to it,
+// A round end that exceeds the border by a tenth of the tolerance remains attached to the border
 // along the chord that the border cuts off.
 TEST(Fillets, StayAttachedToTheBorder) {
   const Region domain{box(0, -10, 20, 10), {}};
@@ -133,7 +135,7 @@ TEST(Fillets, StayAttachedToTheBorder) {
   EXPECT_NEAR(low, -half, 0.1 * half);
 }
 
-// A circle keeps the sides that its tolerance needs, a box its corners.
+// A circle keeps the sides that its tolerance needs, a box keeps its corners.
 TEST(Simplified, RingsKeepToTheTolerance) {
   const std::vector<Vec2> fine = circle_within({1, 2}, 6, 1e-4);
   const std::vector<Vec2> coarse = simplified(fine, 0.02);
@@ -152,7 +154,8 @@ TEST(Simplified, RingsKeepToTheTolerance) {
   EXPECT_EQ(std::count(kept.begin(), kept.end(), Vec2(1, 0)), 0);
 }
 
-// The sum over all cells is the area, a cell that a side halves is half full, and a hole is void.
+// The sum over all cells is the area, a cell that the outline bisects is half full, and a hole is
+// void.
 TEST(Coverage, OfPolygonsIsExact) {
   Grid grid{.x0 = -1, .y0 = 0, .width = 6, .height = 4};
   grid.nx = 12;
@@ -163,7 +166,7 @@ TEST(Coverage, OfPolygonsIsExact) {
   EXPECT_NEAR(f.sum() * grid.dx() * grid.dy(), 12, 1e-12);
   EXPECT_EQ(f[grid.cell(11, 0)], 1);
   EXPECT_EQ(f[grid.cell(0, 7)], 0);
-  // The diagonal passes from (0, 0) to (3, 2) in halves of a cell.
+  // The diagonal has a slope of 2/3; it covers a third of the first cell.
   EXPECT_NEAR(f[grid.cell(0, 0)], 1. / 3, 1e-12);
   Region holed{box(-1, 0, 5, 4), {circle_within({2, 2}, 1.1, 1e-3)}};
   std::reverse(holed.holes[0].begin(), holed.holes[0].end());
@@ -175,8 +178,8 @@ TEST(Coverage, OfPolygonsIsExact) {
   EXPECT_GE(g.minCoeff(), 0);
 }
 
-// Fillets that are small beside the width of fillings leave nothing along the border where a bar
-// crosses it at an angle: the part's corners there are the bar's.
+// Fillets that are small relative to the width of fillings leave no thin strips along the border
+// where a bar crosses it at an angle: the corners of the part there are the corners of the bar.
 TEST(Fillets, LeaveNoWhiskersAlongTheBorder) {
   const Region sheet{box(0, -5, 10, 5), {}};
   const std::vector<std::vector<Vec2>> bars = {{{-1, -0.8}, {4, -1}, {4, 1}, {-1, 0.8}},

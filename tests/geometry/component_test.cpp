@@ -1,5 +1,5 @@
-// One component: its profile is P (26) with a smooth lower bound and exact derivatives, its outline
-// lies on χ = 0 of P (24), its box holds the outline.
+// Shows that the profile of a component is P (26) with a smooth lower bound and exact derivatives,
+// that its outline is on χ = 0 of P (24), and that its box contains the outline.
 
 #include "geometry/components/component.h"
 
@@ -15,13 +15,13 @@ namespace {
 
 using test::RandomComponents;
 
-/// P (26) as printed.
+/// Returns P (26) as printed.
 double printed_profile(const Component& c, double x) {
   const double L = c.half_length;
   return (c.c1 + c.c2 - 2 * c.c3) / (2 * L * L) * x * x + (c.c2 - c.c1) / (2 * L) * x + c.c3;
 }
 
-/// P (24), (25) as printed, for profiles that stay away from their lower bound.
+/// Returns P (24), (25) as printed, for profiles above their lower bound.
 double printed_chi(const Component& c, const Vec2& point) {
   const double dX = point.x() - c.center.x(), dY = point.y() - c.center.y();
   const double x = std::cos(c.angle) * dX + std::sin(c.angle) * dY;
@@ -67,7 +67,7 @@ TEST(Profile, IsThePrintedParabolaAboveItsBoundAndConstantOutside) {
 }
 
 TEST(Profile, BoundIsTheRoundedMaximum) {
-  // A straight profile turns x into g: the three branches of the header in one sweep.
+  // A straight profile maps x to g, so that one loop covers the three branches of the header.
   const double m = 0.1, d = 0.01;
   const Component c{.half_length = 1, .c1 = 0, .c2 = 0.2, .c3 = 0.1};
   const auto rounded = [&](double t) { return 2 * d * (t * t * t - 0.5 * t * t * t * t); };
@@ -91,8 +91,8 @@ TEST(Profile, IsNeverBelowTheMinimum) {
   }
 }
 
-// Derivatives are of order 1. Central differences with h = 1e-6: truncation is h² g'''/6, 1e-9
-// where the bound of 0.01 is rounded.
+// Derivatives are of order 1. Central differences with h = 1e-6 have a truncation error of h²
+// g'''/6, 1e-9 where the bound of 0.01 is rounded.
 TEST(Profile, DerivativesMeetDifferences) {
   RandomComponents random(4);
   int tested = 0;
@@ -123,17 +123,18 @@ TEST(Outline, LiesOnTheZeroLevelAndRunsCounterclockwise) {
   RandomComponents random(5);
   for (int k = 0; k < 50; ++k) {
     Component c = random.next();
-    c.c3 = random.uniform(0.6, 1.4) * 0.5 * (c.c1 + c.c2);  // g stays above the bound
+    c.c3 = random.uniform(0.6, 1.4) * 0.5 * (c.c1 + c.c2);  // keeps g above the bound
     const std::vector<Vec2> vertices = outline(c, 1e-4, 96);
     ASSERT_EQ(vertices.size(), 96u);
-    // χ changes by 6/g per length across the outline: 1e-16 / 0.02 is 1e-13 with room.
+    // χ changes by 6/g per length across the outline: 1e-16 / 0.02 gives 1e-13 with a margin.
     for (const Vec2& v : vertices) EXPECT_NEAR(printed_chi(c, v), 0, 1e-12);
     EXPECT_GT(polygon_area(vertices), 0);
   }
   EXPECT_THROW(outline(Component{}, 1e-4, 2), Error);
 }
 
-// Area of |x/L|^p + |y/c|^p = 1: 4 L c Γ(1 + 1/p)² / Γ(1 + 2/p). Chords miss O(segments^-2).
+// The area of |x/L|^p + |y/c|^p = 1 is 4 L c Γ(1 + 1/p)² / Γ(1 + 2/p). Chords have an error of
+// O(segments^-2).
 TEST(Outline, AreaConvergesToTheClosedForm) {
   const Component c{.half_length = 0.3, .angle = 0.4, .c1 = 0.05, .c2 = 0.05, .c3 = 0.05};
   const double gamma = std::tgamma(1 + 1.0 / 6);
@@ -153,7 +154,7 @@ TEST(BoundingBox, HoldsTheOutline) {
   RandomComponents random(6);
   for (int k = 0; k < 200; ++k) {
     Component c = random.next();
-    c.c3 = random.uniform(0.001, 0.4);  // many bulge beyond c1 and c2 between x = 0 and an end
+    c.c3 = random.uniform(0.001, 0.4);  // many are wider than c1 and c2 between x = 0 and an end
     const Box box = bounding_box(c, 0.01, 0);
     for (const Vec2& v : outline(c, 0.01, 500)) {
       EXPECT_TRUE((v.array() >= box.lower.array() - 1e-15).all());

@@ -1,4 +1,4 @@
-// Sides that cross, against every pair in rational numbers.
+// Shows that crossing sides are found, against exact tests of every pair in rational numbers.
 #include "geometry/crossings.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ int turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return out.sign();
 }
 
-/// Is p, which lies on the line of a and b, between them or one of them?
+/// Returns true if p, which is on the line through a and b, is between them or equal to one of
+/// them.
 bool between(const Vec2& a, const Vec2& b, const Vec2& p) {
   return (p.array() >= a.array().min(b.array())).all() &&
          (p.array() <= a.array().max(b.array())).all();
@@ -48,7 +49,7 @@ bool any_pair_crosses(const std::vector<Vec2>& points, const Sides& sides) {
   return false;
 }
 
-// On a coarse raster sides share ends, touch, lie on each other; on a fine one they cross or not.
+// On a coarse raster sides share ends, touch or overlap; on a fine raster they cross or are apart.
 TEST(SidesCross, AsEveryPairTells) {
   std::mt19937 random(3);
   int crossing = 0;
@@ -74,7 +75,7 @@ TEST(SidesCross, AsEveryPairTells) {
   EXPECT_LT(crossing, 1700);
 }
 
-// Where rounding decides: a vertex a last bit beside a side, or on it.
+// Round-off decides if a vertex is beside a side by the last bit, or on it.
 TEST(SidesCross, LooksAtTheLastBit) {
   const std::vector<Vec2> points = {{0, 0}, {1, 1}, {0.5, 0.5}, {0, 1}};
   EXPECT_TRUE(sides_cross(points, Sides{{0, 1}, {2, 3}}));

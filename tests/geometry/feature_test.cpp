@@ -1,5 +1,6 @@
-// Narrow places of constructed shapes whose widths are known; every reported disc is inscribed; no
-// opposite pair of sampled points is closer than what was found; runs agree bit for bit.
+// Shows that violations of the minimum length scale are found in shapes with known widths; that
+// every reported disc is inscribed; that no opposite pair of sampled points is closer than the
+// result; and that repeated runs agree bit for bit.
 
 #include "geometry/parts/feature.h"
 
@@ -47,12 +48,13 @@ Features features(const std::vector<Polygon>& material, const Polygon& domain = 
   return smallest_features(unite(material, {domain, {}}, voids), {domain, {}});
 }
 
-/// A bar of the given half-length and half-thickness with square ends, around a point.
+/// Returns a bar of the given half-length and half-thickness with square ends, around a point.
 Polygon bar(const Vec2& center, double length, double thickness, double angle) {
   return turned(box(-length, -thickness, length, thickness), angle, 1, center);
 }
 
-// Straight outlines: exact to round-off (1e-12 of sizes of 1, and 1e-9 for emptiness).
+// Straight outlines are exact to round-off (1e-12 for sizes of 1, and 1e-9 for the test of empty
+// discs).
 constexpr double kExact = 1e-11;
 
 TEST(SmallestFeature, OfARectangleIsItsShorterSide) {
@@ -66,7 +68,7 @@ TEST(SmallestFeature, OfTwoBarsIsTheThinnerOneAndTheGapBetween) {
   const Features f = features({box(0, 0, 1, 0.1), box(0, 0.13, 1, 0.33)});
   EXPECT_NEAR(f.solid, 0.1, kExact);
   EXPECT_NEAR(f.gap, 0.03, kExact);
-  // A corner over a flank, off by its distance from the line.
+  // The gap between a corner and a side is the distance of the corner from the line.
   const double angle = 0.7, lift = 0.02;
   const Polygon upper = bar({0, 0}, 0.5, 0.1, angle);
   double lowest = kInfinity;
@@ -82,13 +84,15 @@ TEST(SmallestFeature, OfAVerySmallGapBetweenBars) {
 TEST(SmallestFeature, OfANeckIsItsWidth) {
   EXPECT_NEAR(features({box(0, 0, 1, 1), box(0.9, 0.4, 2.1, 0.6), box(2, 0, 3, 1)}).solid, 0.2,
               kExact);
-  // Bars that meet by their corners: the two vertices where their outlines cross.
+  // For bars that meet at their corners it is the distance of the two vertices where their outlines
+  // cross.
   EXPECT_NEAR(features({box(0, 0, 1, 0.2), box(0.95, 0.15, 2, 0.35)}).solid, std::hypot(0.05, 0.05),
               kExact);
 }
 
 TEST(SmallestFeature, OfAnHourglassIsTheDistanceOfItsArcs) {
-  // A block with two round voids at its sides, 0.3 apart: outlines within the sagitta of the arcs.
+  // A block has two round voids at its sides, 0.3 apart; the polygons are within the sagitta of the
+  // arcs.
   const int n = 160;
   const double sagitta = 1 - std::cos(kPi / n);
   const Features f =
@@ -97,18 +101,18 @@ TEST(SmallestFeature, OfAnHourglassIsTheDistanceOfItsArcs) {
 }
 
 TEST(SmallestFeature, OfATaperedBarIsItsThinEnd) {
-  // Between two blocks: the reflex corners at the thin end.
+  // Between two blocks the width is that of the reflex corners at the thin end.
   const Polygon taper = {{0, -0.05}, {2, -0.15}, {2, 0.15}, {0, 0.05}};
   EXPECT_NEAR(features({taper, box(-1, -0.5, 0.0, 0.5), box(2, -0.5, 3, 0.5)}).solid, 0.1, kExact);
-  // Free, with a round tip: hull of two discs.
+  // A free bar with a round tip is the hull of two discs.
   const double R = 0.2, r = 0.05, distance = 2;
   const double lean = std::asin((R - r) / distance);
   Polygon hull = circle({0, 0}, R, 60, kPi / 2 - lean, 1.5 * kPi + lean);
   const Polygon tip = circle({distance, 0}, r, 40, 1.5 * kPi + lean, 2.5 * kPi - lean);
   hull.insert(hull.end(), tip.begin(), tip.end());
   EXPECT_NEAR(features({hull}).solid, 2 * r, 2 * r * (1 - std::cos(kPi / 78)));
-  // Free, cut square at w = 0.1: the disc that touches the end and both flanks, whose slope is b:
-  // r = w/2 cos b / (1 - sin b).
+  // For a free bar cut square at w = 0.1, the disc touches the end and both sides, whose slope is
+  // b: r = w/2 cos b / (1 - sin b).
   const double slope = std::atan(0.05);
   EXPECT_NEAR(features({taper}).solid, 0.1 * std::cos(slope) / (1 - std::sin(slope)), kExact);
 }
@@ -121,7 +125,7 @@ TEST(SmallestFeature, OfARingIsItsWallAndItsHole) {
   const double sagitta = 1 - std::cos(kPi / n);
   EXPECT_NEAR(f.solid, 0.3, 2 * sagitta);
   EXPECT_NEAR(f.gap, 1.4, 2 * sagitta);
-  // A hole near an edge.
+  // A hole is near an edge.
   EXPECT_NEAR(features({box(0, 0, 2, 1)}, kDomain, {circle({1, 0.3}, 0.25, n)}).solid, 0.05,
               2 * sagitta);
 }
@@ -130,8 +134,8 @@ TEST(SmallestFeature, OfAnAngleIsItsThinnerArm) {
   EXPECT_NEAR(features({box(0, 0, 1, 0.2), box(0, 0, 0.3, 1)}).solid, 0.2, kExact);
 }
 
-/// The largest disc that touches the tip of a superellipse of constant half-thickness g from
-/// within: the end of its medial axis.
+/// Returns the diameter of the largest disc that touches the tip of a superellipse of constant
+/// half-thickness g from within, at the end of its medial axis.
 double end_disc(double L, double g) {
   double low = 0, high = g;
   for (int step = 0; step < 60; ++step) {
@@ -147,8 +151,8 @@ double end_disc(double L, double g) {
   return 2 * low;
 }
 
-// The tips of a slender superellipse close over a good part of its length: a free end is thinner
-// than the middle.
+// The tips of a slender superellipse taper over a considerable part of its length, so that a free
+// end is thinner than the middle.
 TEST(SmallestFeature, OfCrossingComponentsIsTheThinnerOne) {
   const Component thin{{0, 0}, 1, 0.6, 0.1, 0.1, 0.1}, thick{{0.1, 0}, 1, -0.9, 0.15, 0.15, 0.15};
   const Features f =
@@ -159,7 +163,7 @@ TEST(SmallestFeature, OfCrossingComponentsIsTheThinnerOne) {
 
 TEST(SmallestFeature, CutsByTheBorderAreNoFeatures) {
   const Polygon domain = box(0, 0, 2, 1);
-  // Oblique bars that end in the border, and one half outside of it: a strip of 0.07.
+  // Oblique bars end at the border, and one bar is partly outside: a strip of 0.07 remains.
   EXPECT_NEAR(features({bar({1, 0.5}, 3, 0.1, 0.5)}, domain).solid, 0.2, kExact);
   EXPECT_NEAR(features({bar({1, 0.5}, 3, 0.1, 1.3)}, domain).solid, 0.2, kExact);
   EXPECT_NEAR(features({box(-1, -0.2, 3, 0.07)}, domain).solid, 0.07, kExact);
@@ -182,7 +186,7 @@ TEST(SmallestFeature, OfABladeIsZeroAndOfACornerIsNot) {
     return Polygon{{0, 0}, {1, -std::tan(angle / 2)}, {1, std::tan(angle / 2)}};
   };
   EXPECT_EQ(features({wedge(0.3)}).solid, 0);
-  // The incircle of a triangle: twice its area over half its perimeter is the diameter.
+  // The diameter of the incircle of a triangle is two times its area divided by half its perimeter.
   const double tall = 2 * std::tan(0.35), slant = std::hypot(1, tall / 2);
   EXPECT_NEAR(features({wedge(0.7)}).solid, 2 * tall / (2 * slant + tall), kExact);
 }
@@ -203,7 +207,7 @@ TEST(SmallestFeature, TurnsAndScales) {
     }
 }
 
-/// Points of the outlines, about `step` apart.
+/// Returns points of the outlines, about `step` apart.
 Polygon samples(const std::vector<Region>& regions, double step) {
   Polygon out;
   const auto walk = [&](const Polygon& ring) {
@@ -226,10 +230,10 @@ double distance_to(const Polygon& points, const Vec2& p) {
   return out;
 }
 
-// Independent of the graph: sampled outlines. Every reported disc is inscribed and touches; and two
-// samples whose disc is empty and lies in the material are a neck (or a bar) of about their
-// distance, so that nothing much thinner may have been missed.
-TEST(NarrowPlaces, OfRandomDesignsAgreeWithSampledOutlines) {
+// This test is independent of the Voronoi graph: it samples the outlines. Every reported disc is
+// inscribed and touches them. Two samples whose disc is empty and inside the material are a neck
+// (or a bar) of about their distance, so that no much smaller width can have been missed.
+TEST(LengthScaleViolations, OfRandomDesignsAgreeWithSampledOutlines) {
   const Region domain{box(0, 0, 2, 1), {}};
   const double step = 0.01;
   for (unsigned seed = 1; seed <= 8; ++seed) {
@@ -239,8 +243,9 @@ TEST(NarrowPlaces, OfRandomDesignsAgreeWithSampledOutlines) {
       outlines.push_back(outline_within(c, 0.02, 1e-4));
     const std::vector<Region> regions = unite(outlines, domain, {});
     const Polygon points = samples(regions, step);
-    const std::vector<NarrowPlace> places = narrow_places(regions, domain, 0.2);
-    for (const NarrowPlace& p : places) {
+    const std::vector<LengthScaleViolation> locations =
+        length_scale_violations(regions, domain, 0.2);
+    for (const LengthScaleViolation& p : locations) {
       if (p.width == 0) continue;
       EXPECT_NEAR(distance_to(points, p.center), 0.5 * p.width,
                   step * step / (4 * p.width) + 1e-9 + step * (p.width < step));
@@ -267,7 +272,7 @@ TEST(NarrowPlaces, OfRandomDesignsAgreeWithSampledOutlines) {
         if (!inside && !border) sampled_gap = std::min(sampled_gap, width);
       }
     double found = 0.2, found_gap = 0.2;
-    for (const NarrowPlace& p : places) {
+    for (const LengthScaleViolation& p : locations) {
       double& smallest = p.solid ? found : found_gap;
       smallest = std::min(smallest, p.width);
     }
@@ -276,18 +281,19 @@ TEST(NarrowPlaces, OfRandomDesignsAgreeWithSampledOutlines) {
   }
 }
 
-bool same(const NarrowPlace& x, const NarrowPlace& y) {
+bool same(const LengthScaleViolation& x, const LengthScaleViolation& y) {
   return x.kind == y.kind && x.solid == y.solid && x.width == y.width && x.center == y.center &&
          x.a == y.a && x.b == y.b;
 }
-bool same(const std::vector<NarrowPlace>& x, const std::vector<NarrowPlace>& y) {
-  return std::equal(
-      x.begin(), x.end(), y.begin(), y.end(),
-      [](const NarrowPlace& one, const NarrowPlace& other) { return same(one, other); });
+bool same(const std::vector<LengthScaleViolation>& x, const std::vector<LengthScaleViolation>& y) {
+  return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                    [](const LengthScaleViolation& one, const LengthScaleViolation& other) {
+                      return same(one, other);
+                    });
 }
 
-/// Shapes with many ties, where round-off decides: pairs of crossing bars on a lattice, square, so
-/// that discs have four contacts and places come in equal widths; and a random one.
+/// Returns shapes with many ties, where round-off decides: pairs of crossing square bars on a
+/// lattice, so that discs have four contacts and many widths are equal; and a random shape.
 std::vector<std::vector<Region>> shapes(const Region& domain) {
   std::vector<Polygon> lattice, outlines;
   for (int i = 0; i < 4; ++i)
@@ -301,18 +307,19 @@ std::vector<std::vector<Region>> shapes(const Region& domain) {
   return {unite(lattice, domain, {}), unite(outlines, domain, std::vector<Polygon>{hole})};
 }
 
-Features smallest_of(const std::vector<NarrowPlace>& places) {
+Features smallest_of(const std::vector<LengthScaleViolation>& locations) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Features out{kInfinity, kInfinity};
-  for (const NarrowPlace& p : places) {
+  for (const LengthScaleViolation& p : locations) {
     double& smallest = p.solid ? out.solid : out.gap;
     smallest = std::min(smallest, p.width);
   }
   return out;
 }
 
-// Of a design and of what counts in it: the smallest of all its places, which are all looked at.
-TEST(SmallestFeature, IsTheSmallestOfAllPlaces) {
+// The smallest feature, of the design and of its counted region, must be the smallest of all
+// locations.
+TEST(SmallestFeature, IsTheSmallestOfAllLocations) {
   const Region domain{box(0, 0, 2, 1), {}};
   for (unsigned seed = 1; seed <= 20; ++seed) {
     test::RandomComponents random(seed);
@@ -321,52 +328,53 @@ TEST(SmallestFeature, IsTheSmallestOfAllPlaces) {
       outlines.push_back(outline_within(c, 0.02, 1e-3));
     const std::vector<Region> regions = unite(outlines, domain, {});
     for (const double left : {0.0, 0.7, 3.0}) {
-      const auto counts = [left](const NarrowPlace& p) { return p.center.x() > left; };
-      std::vector<NarrowPlace> places =
-          narrow_places(regions, domain, std::numeric_limits<double>::infinity());
-      std::erase_if(places, [&](const NarrowPlace& p) { return !counts(p); });
-      EXPECT_EQ(places.empty(), left > 2) << seed;  // nothing is beyond the domain
-      const Features all = smallest_of(places), found = smallest_features(regions, domain, counts);
+      const auto counts = [left](const LengthScaleViolation& p) { return p.center.x() > left; };
+      std::vector<LengthScaleViolation> locations =
+          length_scale_violations(regions, domain, std::numeric_limits<double>::infinity());
+      std::erase_if(locations, [&](const LengthScaleViolation& p) { return !counts(p); });
+      EXPECT_EQ(locations.empty(), left > 2) << seed;  // no location is outside the domain
+      const Features all = smallest_of(locations),
+                     found = smallest_features(regions, domain, counts);
       EXPECT_EQ(found.solid, all.solid) << seed;
       EXPECT_EQ(found.gap, all.gap) << seed;
     }
   }
 }
 
-// Sides that cross by round-off take rational numbers: a design with a side twice has the places of
-// the one without, and those of the sides themselves.
-TEST(NarrowPlaces, OfSidesThatCross) {
+// Sides that overlap need rational numbers: a design with a region without area must have all
+// violations of the design without this region.
+TEST(LengthScaleViolations, OfSidesThatCross) {
   const Region domain{box(0, 0, 2, 1), {}};
   const std::vector<Region> apart = {{box(0.1, 0.1, 0.5, 0.9), {}}, {box(0.8, 0.1, 1.5, 0.9), {}}};
   std::vector<Region> crossing = apart;
   crossing.push_back({{{1.6, 0.2}, {1.7, 0.2}, {1.65, 0.2}}, {}});  // no area: its sides overlap
-  const std::vector<NarrowPlace> expected = narrow_places(apart, domain, 0.75),
-                                 found = narrow_places(crossing, domain, 0.75);
-  for (const NarrowPlace& p : expected)
-    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const NarrowPlace& q) {
+  const std::vector<LengthScaleViolation> expected = length_scale_violations(apart, domain, 0.75),
+                                          found = length_scale_violations(crossing, domain, 0.75);
+  for (const LengthScaleViolation& p : expected)
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const LengthScaleViolation& q) {
       return q.kind == p.kind && q.solid == p.solid && q.width == p.width && q.center == p.center;
     })) << p.width;
 }
 
-// CGAL orders what it made by address unless told otherwise: then no two calls agree.
-TEST(NarrowPlaces, AreTheSameBitForBitWhereverTheHeapPutsThings) {
+// By default CGAL orders its objects by address; then no two calls would agree.
+TEST(LengthScaleViolations, AreTheSameBitForBitWhereverTheHeapPutsThings) {
   const Region domain{box(0, 0, 2, 1), {}};
   test::ScrambledHeap heap(1);
   for (const std::vector<Region>& regions : shapes(domain)) {
-    const std::vector<NarrowPlace> first = narrow_places(regions, domain, 0.2);
+    const std::vector<LengthScaleViolation> first = length_scale_violations(regions, domain, 0.2);
     ASSERT_GT(first.size(), 50u);
     for (int k = 0; k < 20; ++k) {
       heap.again();
-      EXPECT_TRUE(same(narrow_places(regions, domain, 0.2), first)) << k;
+      EXPECT_TRUE(same(length_scale_violations(regions, domain, 0.2), first)) << k;
     }
   }
 }
 
-TEST(NarrowPlaces, AreTheSameBitForBitWhereverRingsBegin) {
+TEST(LengthScaleViolations, AreTheSameBitForBitWhereverRingsBegin) {
   const Region domain{box(0, 0, 2, 1), {}};
   std::mt19937 engine(1);
   for (std::vector<Region> regions : shapes(domain)) {
-    const std::vector<NarrowPlace> first = narrow_places(regions, domain, 0.2);
+    const std::vector<LengthScaleViolation> first = length_scale_violations(regions, domain, 0.2);
     const auto rotate = [&](Polygon& ring) {
       std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(engine() % ring.size()),
                   ring.end());
@@ -378,7 +386,7 @@ TEST(NarrowPlaces, AreTheSameBitForBitWhereverRingsBegin) {
         std::shuffle(r.holes.begin(), r.holes.end(), engine);
       }
       std::shuffle(regions.begin(), regions.end(), engine);
-      EXPECT_TRUE(same(narrow_places(regions, domain, 0.2), first)) << k;
+      EXPECT_TRUE(same(length_scale_violations(regions, domain, 0.2), first)) << k;
     }
   }
 }

@@ -1,5 +1,5 @@
-// Gaps to a line by constructed shapes; those of random polygons by the distances of their
-// vertices.
+// Shows that gaps between material and a line are found for constructed shapes, and that gaps of
+// random polygons are the distances of their nearest vertices.
 
 #include "geometry/parts/line_gaps.h"
 
@@ -17,13 +17,14 @@ constexpr double kLimit = 0.5;
 const Segment kLine{{0, -1}, {0, 1}};
 const Region kDomain{{{0, -1}, {4, -1}, {4, 1}, {0, 1}}, {}};
 
-std::vector<NarrowPlace> gaps(const std::vector<std::vector<Vec2>>& polygons) {
+std::vector<LengthScaleViolation> gaps(const std::vector<std::vector<Vec2>>& polygons) {
   const Segment lines[] = {kLine};
   return line_gaps(unite(polygons, kDomain, {}), lines, kLimit);
 }
 
 TEST(LineGaps, OfCornersAndSidesAreTheirDistances) {
-  // A side that is parallel to the line, one corner, and what touches the line or is far from it.
+  // The shapes are a side parallel to the line, one corner, a shape that touches the line and one
+  // far from it.
   const auto found = gaps({{{0.1, -0.9}, {1, -0.9}, {1, -0.7}, {0.1, -0.7}},
                            {{0.02, 0.1}, {1, 0}, {1, 0.2}},
                            {{-0.1, 0.4}, {1, 0.4}, {1, 0.5}, {-0.1, 0.5}},
@@ -34,11 +35,11 @@ TEST(LineGaps, OfCornersAndSidesAreTheirDistances) {
   EXPECT_NEAR((found[0].a - Vec2(0, 0.1)).norm(), 0, 1e-15);
   EXPECT_NEAR(found[1].width, 0.1, 1e-15);
   EXPECT_NEAR((found[1].b - Vec2(0.1, -0.8)).norm(), 0, 1e-15);
-  for (const NarrowPlace& p : found) EXPECT_FALSE(p.solid);
+  for (const LengthScaleViolation& p : found) EXPECT_FALSE(p.solid);
 }
 
 TEST(LineGaps, AreNotSeenThroughMaterial) {
-  // A wall at 0.1 hides what is behind it; the hole in a block that touches the line is no gap.
+  // A wall at 0.1 covers the shape behind it; the hole in a block that touches the line is no gap.
   EXPECT_EQ(
       gaps({{{0.1, -0.5}, {0.2, -0.5}, {0.2, 0.5}, {0.1, 0.5}}, {{0.3, 0}, {1, -0.1}, {1, 0.1}}})
           .size(),
@@ -55,7 +56,8 @@ TEST(LineGaps, EndWhereTheLineEnds) {
   EXPECT_TRUE(line_gaps(unite(above, kDomain, {}), lines, kLimit).empty());
 }
 
-// The nearest of all points that do not touch is always among them.
+// Of an outline and a line of the frame of the domain, the vertex of the outline with the smallest
+// distance from the line must be found; vertices on the line have no gap.
 TEST(LineGaps, OfRandomDesignsHaveTheNearestVertex) {
   int with_gap = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
@@ -73,7 +75,7 @@ TEST(LineGaps, OfRandomDesignsHaveTheNearestVertex) {
         EXPECT_NEAR(found.front().width, nearest, 1e-12);
         ++with_gap;
       }
-      for (const NarrowPlace& p : found) {
+      for (const LengthScaleViolation& p : found) {
         EXPECT_NEAR(p.a.x(), 0, 0);
         EXPECT_FALSE(contains(piece, p.center));
       }

@@ -1,4 +1,5 @@
-// Curves of polygons against exact areas, radii and distances, and against their mirror image.
+// Shows that the curves of polygons have exact areas, radii and distances, and that mirrored
+// polygons have mirrored curves.
 #include "geometry/parts/outline_curves.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ double distance(const Ring& ring, const Vec2& p) {
   return least;
 }
 
-/// Largest distance from points on one ring to the other one.
+/// Returns the largest distance from vertices of one ring to the other ring.
 double farthest(const Ring& from, const Ring& to) {
   double out = 0;
   for (const Vec2& p : from) out = std::max(out, distance(to, p));
@@ -46,7 +47,7 @@ void expect_closed(const CurvedRegion& region) {
       EXPECT_EQ(c.to.x(), next.from.x());
       EXPECT_EQ(c.to.y(), next.from.y());
       if (c.is_line()) continue;
-      // CAD kernels take 1e-10 m as no distance.
+      // CAD kernels treat 1e-10 m as zero distance.
       EXPECT_NEAR((c.from - c.center).norm(), c.radius, 1e-10);
       EXPECT_NEAR((c.to - c.center).norm(), c.radius, 1e-10);
       EXPECT_NEAR((c.at(1 - 1e-9) - c.to).norm(), 0, 1e-8 * c.radius);
@@ -58,13 +59,13 @@ int lines_in(const CurveRing& ring) {
       std::count_if(ring.begin(), ring.end(), [](const auto& c) { return c.is_line(); }));
 }
 
-/// A bar whose sides bulge or are waisted.
+/// Returns a bar whose sides are convex or concave.
 Component bar(const Vec2& center, double angle, double end, double middle) {
   return {
       .center = center, .half_length = 0.04, .angle = angle, .c1 = end, .c2 = end, .c3 = middle};
 }
 
-/// Bars, two eyes with bores, and a side of the domain across.
+/// Returns a link of two bars and two eyes with bores that a side of the domain cuts.
 std::vector<Region> link(double mirror = 1) {
   std::vector<Ring> all;
   for (const Component& c : {bar({0.05, mirror * 0.004}, mirror * 0.2, 0.003, 0.005),
@@ -95,7 +96,7 @@ TEST(OutlineCurves, OfADiscIsACircleOfItsRadius) {
   }
 }
 
-// A rounded rectangle as drawings have it: lines and quarter circles, area exact.
+// A rounded rectangle must become lines and quarter circles with the exact area.
 TEST(OutlineCurves, OfARoundedRectangleAreFourLinesAndFourArcs) {
   const double w = 0.12, h = 0.05, r = 0.007;
   Ring ring;
@@ -121,8 +122,8 @@ TEST(OutlineCurves, OfARoundedRectangleAreFourLinesAndFourArcs) {
   }
 }
 
-// Six vertices on a circle are no circle when its sides are far within.
-// A vertex that is 3e-9 m off a circle of 4 m lies on it to round-off. The arc ends at the vertex.
+// A vertex that is 3e-9 m off a circle of 4 m is on it to round-off. The arc must end at the
+// vertex.
 TEST(OutlineCurves, OfALargeCircleEndAtItsVertices) {
   const double r = 4;
   Ring ring = {{0.1, -0.1}};
@@ -138,6 +139,7 @@ TEST(OutlineCurves, OfALargeCircleEndAtItsVertices) {
   EXPECT_EQ(lines_in(found[0].outer), 3);
 }
 
+// Six vertices on a circle are no circle if their sides are far inside it.
 TEST(OutlineCurves, OfAHexagonAreItsSides) {
   Ring ring;
   for (int k = 0; k < 6; ++k)
@@ -148,7 +150,7 @@ TEST(OutlineCurves, OfAHexagonAreItsSides) {
   EXPECT_EQ(lines_in(out.outer), 6);
 }
 
-// Where a line cuts a disc off, the arc ends on both: area of a circular segment.
+// Where a line cuts a disc, arc and line meet: the expected area is that of a circular segment.
 TEST(OutlineCurves, MeetWhereAnArcIsCut) {
   for (const double height : {0.0031, 0.0, -0.0047}) {
     const Ring disc = circle_within({0, 0}, 0.01, kTolerance);
@@ -173,7 +175,8 @@ TEST(OutlineCurves, MeetWhereAnArcIsCut) {
               1e-14);
 }
 
-// Curves keep to their tolerance of the polygons and of finer ones, and few of them do.
+// Curves stay within the tolerance of their polygon and of a finer one, and their number is less
+// than half of the sides.
 TEST(OutlineCurves, OfComponentsStayWithinTheTolerance) {
   const Component c = bar({0, 0}, 0.3, 0.004, 0.006);
   const Region coarse{outline_within(c, 1e-3, 0.5 * kTolerance), {}};
@@ -184,7 +187,7 @@ TEST(OutlineCurves, OfComponentsStayWithinTheTolerance) {
   EXPECT_LT(farthest(sampled, outline_within(c, 1e-3, 1e-3 * kTolerance)), kTolerance);
   EXPECT_LT(out.outer.size(), coarse.outer.size() / 2);
   EXPECT_NEAR(area(out), area(Region{sampled, {}}), 1e-3 * kTolerance * 0.2);
-  // They go on in each other's direction.
+  // Consecutive curves have the same tangent direction.
   for (std::size_t k = 0; k < out.outer.size(); ++k) {
     const OutlineCurve &a = out.outer[k], &b = out.outer[(k + 1) % out.outer.size()];
     const Vec2 s = (a.to - a.at(1 - 1e-6)).normalized(), t = (b.at(1e-6) - b.from).normalized();
@@ -217,7 +220,7 @@ TEST(OutlineCurves, OfALinkHaveItsBoresAndItsArea) {
   EXPECT_LT(3 * curves, vertices);
 }
 
-// A mirrored design has mirrored curves, to the tolerance.
+// A mirrored design has mirrored curves within the tolerance.
 TEST(OutlineCurves, OfAMirroredLinkAreMirrored) {
   const CurvedRegion one = curves_of(link(), kTolerance)[0],
                      two = curves_of(link(-1), kTolerance)[0];
@@ -228,7 +231,8 @@ TEST(OutlineCurves, OfAMirroredLinkAreMirrored) {
   EXPECT_LT(hausdorff(a, b), kTolerance);
 }
 
-// A drop with one corner, where its curve begins and ends.
+// A drop has one corner. Its curves must be closed and stay within half of the tolerance of the
+// polygon for any first vertex.
 TEST(OutlineCurves, OfADropKeepItsCorner) {
   Ring ring;
   constexpr int kVertices = 400;
@@ -250,7 +254,8 @@ TEST(OutlineCurves, OfADropKeepItsCorner) {
   }
 }
 
-// Vertices on a side of the domain are none of its line, even where a flank leaves it smoothly.
+// Vertices on a side of the domain do not divide its line, even where an edge leaves it at a small
+// angle.
 TEST(OutlineCurves, OfSidesWithVerticesOnThemAreOneLine) {
   Ring ring = {{0, 0}, {0.01, 0}, {0.0103, 0}, {0.02, 0}, {0.03, 0.0008}, {0.03, 0.02}, {0, 0.02}};
   for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -263,7 +268,7 @@ TEST(OutlineCurves, OfSidesWithVerticesOnThemAreOneLine) {
   }
 }
 
-// Slits far below the tolerance stay open, and curves do not cross.
+// Slits far below the tolerance remain open, and curves do not cross.
 TEST(OutlineCurves, DoNotCrossInSlits) {
   std::vector<Ring> two;
   const Component c = bar({0.05, 0}, 0, 0.003, 0.003);
@@ -283,7 +288,7 @@ TEST(OutlineCurves, DoNotCrossInSlits) {
   EXPECT_NO_THROW(region_of(rings));
 }
 
-// An outline that touches itself has its bores as circles nevertheless.
+// In an outline that touches itself, bores are nevertheless circles.
 TEST(OutlineCurves, OfOutlinesThatTouchThemselvesHaveBores) {
   const Ring plate = corners_of({{0, 0}, {0.1, 0.05}});
   const std::vector<Ring> voids = {corners_of({{0.01, 0.01}, {0.02, 0.02}}),

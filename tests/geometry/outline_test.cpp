@@ -1,4 +1,5 @@
-// Polygons: the union is exact, holes and pieces are counted, the domain clips.
+// Shows that the union of polygons is exact, that holes and connected regions are counted, and that
+// the domain clips it.
 
 #include "geometry/components/outline.h"
 
@@ -33,7 +34,7 @@ TEST(Unite, CrossingRectanglesOverlapOnce) {
 }
 
 TEST(Unite, TurnedRectangleOverlapsAsComputedByHand) {
-  // A square of side 2 and the same turned by 45 degrees share a regular octagon of inradius 1:
+  // A square of side 2 and its copy rotated by 45 degrees share a regular octagon of inradius 1:
   // area 8 (√2 - 1).
   std::vector<Vec2> turned;
   const double r = std::numbers::sqrt2;
@@ -59,8 +60,8 @@ TEST(Unite, FrameHasAHole) {
   EXPECT_FALSE(contains(united[0], {4.1, 2}));  // outside
 }
 
-// One superellipse |x/L|^6 + |y/g|^6 <= 1: area 4 L g Γ(7/6)²/Γ(4/3). A polygon within 1e-7 of a
-// curve of length 5 is off by less than 5e-7.
+// The superellipse |x/L|^6 + |y/g|^6 <= 1 has the area 4 L g Γ(7/6)²/Γ(4/3). The area of a polygon
+// within 1e-7 of a curve of length 5 has an error below 5e-7.
 TEST(OutlineWithin, HasTheAreaOfItsSuperellipse) {
   const Component c{
       .center = {0.3, -0.2}, .half_length = 1, .angle = 0.4, .c1 = 0.25, .c2 = 0.25, .c3 = 0.25};
@@ -115,7 +116,7 @@ TEST(Unite, RefusesWhatIsNoPolygon) {
   EXPECT_THROW(unite(Polygons{rectangle(0, 0, 1, 1)}, {{1, 1}, {1, 2}}), Error);
 }
 
-// Two halves of the plane add up to the whole: clipping neither loses nor doubles anything.
+// The unions in two half planes add up to the whole: clipping neither loses nor duplicates area.
 TEST(Unite, HalvesOfComponentUnionsAddUp) {
   test::RandomComponents random(4);
   for (int k = 0; k < 5; ++k) {
@@ -143,17 +144,18 @@ double area_of(const Triangulation& t) {
   return out;
 }
 
-// Outlines are exact until they are rounded to doubles: then points coincide and edges cross by
-// round-off. Areas stay what they are.
+// Exact outlines are rounded to doubles; then points coincide, and edges cross by round-off. Areas
+// must not change.
 TEST(Triangulate, BearsWhatRoundingDoesToOutlines) {
   const std::vector<Vec2> square = {{0, 0}, {1, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 1}};
   EXPECT_NEAR(area_of(triangulate({square, {}})), 1, 1e-15);
-  const std::vector<Vec2> hole = {{0.4, -1e-18}, {0.2, 0.5}, {0.6, 0.5}};  // pokes through the edge
+  // protrudes through the edge
+  const std::vector<Vec2> hole = {{0.4, -1e-18}, {0.2, 0.5}, {0.6, 0.5}};
   EXPECT_NEAR(area_of(triangulate({square, {hole}})), 0.9, 1e-15);
 }
 
-// Diamonds that touch corner to corner: 900 holes, and between them as many patches of material
-// that share single points only. What is left of the area is known.
+// Diamonds touch at their corners: 900 holes, and between them as many regions of material that
+// share single points only. The remaining area is known.
 TEST(Triangulate, KnowsInsideFromOutsideWhereRingsTouch) {
   constexpr int kSide = 30;
   Region sieve{rectangle(0, 0, kSide, kSide), {}};
@@ -163,7 +165,8 @@ TEST(Triangulate, KnowsInsideFromOutsideWhereRingsTouch) {
   EXPECT_NEAR(area_of(triangulate(sieve)), 0.5 * kSide * kSide, 1e-12 * kSide * kSide);
 }
 
-// The polygon of n sides in a circle: area n/2 r² sin(2π/n), its sides r (1 - cos(π/n)) within.
+// A polygon of n sides inscribed in a circle has the area n/2 r² sin(2π/n); its sides are r (1 -
+// cos(π/n)) inside.
 TEST(Circle, SidesStayWithinTheTolerance) {
   for (const double r : {1e-3, 0.7, 40.0})
     for (const double tolerance : {1e-6, 1e-3, 10.0}) {
@@ -185,7 +188,7 @@ TEST(Disc, HasTheAreaAndTheCentroidOfAPolygon) {
   for (const int n : {3, 8, 200}) {
     std::vector<Vec2> ring;
     for (int k = 0; k < n; ++k) {
-      const double angle = -2 * std::numbers::pi * k / n;  // clockwise, as holes are
+      const double angle = -2 * std::numbers::pi * k / n;  // clockwise, like holes
       ring.emplace_back(center + 0.7 * Vec2(std::cos(angle), std::sin(angle)));
     }
     const Disc found = disc_like(ring);

@@ -1,4 +1,5 @@
-// Meshes of parts: areas are those of the outline, no side crosses it, angles and sizes are kept.
+// Shows that meshes of parts have the area of the outline, that no triangle crosses it, and that
+// angles and sizes are within their limits.
 
 #include "geometry/parts/part_mesh.h"
 
@@ -52,7 +53,7 @@ double smallest_angle(const PartMesh& mesh) {
   return out;
 }
 
-/// Sides with a triangle on one side only, by their middle.
+/// Returns sides with a triangle on one side only, by the number of their middle node.
 std::map<int, std::pair<int, int>> border_of(const PartMesh& mesh) {
   std::map<int, std::pair<int, int>> out;
   for (const auto& t : mesh.triangles)
@@ -69,8 +70,8 @@ TEST(PartMesh, FillsAFrameWithGoodTriangles) {
   EXPECT_NEAR(mesh.area(), 6 - 0.5, 1e-13);
   EXPECT_LE(longest_side(mesh), 0.2);
   EXPECT_GE(smallest_angle(mesh), 20.7);
-  EXPECT_EQ(mesh.n_pieces, 1);
-  // Euler: vertices - edges + faces = 1 - holes.
+  EXPECT_EQ(mesh.n_connected_regions, 1);
+  // Euler's formula: vertices - edges + faces = 1 - holes.
   const auto n_edges = static_cast<int>(mesh.points.size()) - mesh.n_corners;
   EXPECT_EQ(mesh.n_corners - n_edges + static_cast<int>(mesh.triangles.size()), 0);
   double border = 0;
@@ -94,8 +95,8 @@ TEST(PartMesh, MiddlesLieHalfwayAndCornersTurnLeft) {
   }
 }
 
-// A line across is a chain of sides from one border to the other, also where it comes within
-// round-off of the corners of a box.
+// A line across is a chain of sides from one border to the other, also where it is within round-off
+// of vertices of the outline.
 TEST(PartMesh, LinesAreSides) {
   const double x = 0.7;
   const std::vector<Region> plate = {
@@ -116,9 +117,8 @@ TEST(PartMesh, LinesAreSides) {
   EXPECT_GE(longest_side(mesh), 1e-3);
 }
 
-// Ends of a line along a slanted border are nodes there.
-// Places of loads along a moving border begin where others end, but for the last bit: refinement
-// went on without end between such points.
+// Loads along a moving border begin where others end, except for round-off. Refinement between such
+// points must end.
 TEST(PartMesh, LinesThatAgreeUpToRoundOffAreOne) {
   const double x = 0.37209595141998519, upper = 0.05;
   const std::vector<Region> plate = {{rectangle(0, -0.05, x, upper), {}}};
@@ -140,6 +140,7 @@ TEST(PartMesh, LinesThatAgreeUpToRoundOffAreOne) {
   EXPECT_GT(shortest, 1e-4);
 }
 
+// The ends of a line along a slanted border must be nodes of the border.
 TEST(PartMesh, EndsOnASlantedBorderAreNodes) {
   const std::vector<Region> triangle = {{{{0, 0}, {1, 0}, {0, 0.7}}, {}}};
   const auto on = [](double t) { return Vec2(1 - t, 0.7 * t); };
@@ -154,7 +155,7 @@ TEST(PartMesh, EndsOnASlantedBorderAreNodes) {
 TEST(PartMesh, PiecesThatTouchInAPointStayApart) {
   const std::vector<Region> both = {{rectangle(0, 0, 1, 1), {}}, {rectangle(1, 1, 2, 2), {}}};
   const PartMesh mesh = mesh_of(both, 0.5);
-  EXPECT_EQ(mesh.n_pieces, 2);
+  EXPECT_EQ(mesh.n_connected_regions, 2);
   const auto there = std::count_if(mesh.points.begin(), mesh.points.end(),
                                    [](const Vec2& p) { return p == Vec2(1, 1); });
   EXPECT_EQ(there, 2);
@@ -184,7 +185,7 @@ TEST(PartMesh, RefinesWhereItIsToldTo) {
   EXPECT_GT(far, 0.1);
 }
 
-// What designs are: unions of many components, with tiny sides and sharp wedges.
+// Typical designs are unions of many components, with tiny sides and sharp wedges.
 TEST(PartMesh, UnionsOfComponentsAreMeshedAndTheSameTwice) {
   std::mt19937 engine(7);
   for (int round = 0; round < 5; ++round) {
@@ -203,7 +204,7 @@ TEST(PartMesh, UnionsOfComponentsAreMeshedAndTheSameTwice) {
     for (int k = 1; k < 20; ++k) lines.push_back({{0.1 * k, -1}, {0.1 * k, 2}});
     const PartMesh mesh = mesh_of(regions, 0.05, lines), again = mesh_of(regions, 0.05, lines);
     EXPECT_NEAR(mesh.area(), area(regions), 1e-9);
-    EXPECT_EQ(mesh.n_pieces, static_cast<int>(regions.size()));
+    EXPECT_EQ(mesh.n_connected_regions, static_cast<int>(regions.size()));
     EXPECT_EQ(mesh.points, again.points);
     EXPECT_EQ(mesh.triangles, again.triangles);
     for (const auto& t : mesh.triangles)

@@ -5,7 +5,7 @@
 
 #include "geometry/components/component.h"
 
-/// Random components for the tests of this folder.
+/// Random components for the tests of the geometry.
 namespace flexmorph::test {
 
 class RandomComponents {
@@ -16,8 +16,8 @@ class RandomComponents {
     return std::uniform_real_distribution<double>(lower, upper)(engine_);
   }
 
-  /// Center inside width x height; half-thicknesses independent of each other, so that profiles
-  /// bulge, undercut and taper; sizes for a domain of order 1.
+  /// Returns a component with its center inside width x height. The half-thicknesses are
+  /// independent, so that profiles are convex, concave and tapered; sizes suit a domain of order 1.
   Component next(double width = 1, double height = 1) {
     Component c;
     c.center = {uniform(0, width), uniform(0, height)};

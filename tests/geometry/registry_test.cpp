@@ -1,5 +1,5 @@
-// Shows that a registry finds its rows by their names, in their order, and refuses a second row of
-// one name, and a row without one.
+// Shows that a registry finds its rows by their names in their order, and refuses a second row with
+// a name that exists, and a row without a name.
 #include "geometry/registry.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(Registry, FindsRowsByTheirNames) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_STREQ(error.what(), "there is another joint 'one'");
+    EXPECT_STREQ(error.what(), "the joint 'one' exists already");
   }
   EXPECT_THROW(rows.add(none), Error);
   EXPECT_EQ(rows.rows().size(), 2u);

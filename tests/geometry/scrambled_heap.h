@@ -4,14 +4,14 @@
 #include <random>
 #include <vector>
 
-/// Heaps as other runs have them: whatever is allocated next lies elsewhere, in another order.
+/// A heap in another state: later allocations have other addresses in another order.
 namespace flexmorph::test {
 
 class ScrambledHeap {
  public:
   explicit ScrambledHeap(unsigned seed) : engine_(seed), blocks_(4000) {}
 
-  /// Takes and gives back blocks of 16 B to 40 kB, so that holes of all sizes are in any order.
+  /// Allocates and frees blocks of 16 B to 40 kB, so that free areas of all sizes are in any order.
   void again() {
     for (int k = 0; k < 3000; ++k) {
       std::unique_ptr<char[]>& block = blocks_[engine_() % blocks_.size()];

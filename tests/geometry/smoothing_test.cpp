@@ -1,4 +1,5 @@
-// The low-pass filter of outlines against its response to waves, and what it leaves alone.
+// Shows that the low-pass filter of outlines has the right response to waves and keeps given
+// points, the area, straight lines, fillets and symmetry, and that rings do not cross.
 #include "geometry/parts/smoothing.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ std::vector<Vec2> box(double x0, double y0, double x1, double y1) {
   return corners_of({{x0, y0}, {x1, y1}});
 }
 
-/// A plate of the length 40 whose upper side, at 4, has waves.
+/// Returns a plate of length 40 whose upper side, at 4, is a wave.
 Region waved(double length, double height) {
   std::vector<Vec2> ring = {{0, 0}, {40, 0}, {40, 4}};
   constexpr int kSides = 1600;
@@ -36,7 +37,7 @@ Region smooth(const Region& region) {
   return out.front();
 }
 
-/// Largest height of the upper side above 4 far from its ends.
+/// Returns the largest height of the upper side above 4 far from its ends.
 double height_of(const Region& region) {
   double out = 0;
   for (const Vec2& p : region.outer)
@@ -44,24 +45,25 @@ double height_of(const Region& region) {
   return out;
 }
 
-// A wave of the length l keeps 1 / (1 + (5 / l)^4) of its height, with features of the width 1.
+// A wave of length l keeps 1 / (1 + (5 / l)^4) of its height for features of width 1.
 TEST(Smoothing, HalvesWavesOfFiveFeatures) {
   for (const double length : {2.0, 4.0, 5.0, 8.0}) {
     const double height = 0.02 * length, response = 1 / (1 + std::pow(5 / length, 4));
     const double found = height_of(smooth(waved(length, height)));
-    // Nothing moves by more than 0.12.
+    // No point moves by more than 0.12.
     const double expected = std::max(response * height, height - 0.12);
     EXPECT_NEAR(found, expected, 0.02 * height + 2 * kTolerance) << length;
   }
 }
 
-// No point moves by more than 0.12 features.
+// No point moves by more than 0.12 times the feature width.
 TEST(Smoothing, MovesNothingFar) {
   EXPECT_GT(height_of(smooth(waved(2, 0.3))), 0.3 - 0.12 - kTolerance);
 }
 
-// Nothing moves within a feature of kept points, and all that it may beyond two.
-TEST(Smoothing, KeepsPlaces) {
+// Points within one feature width of kept points do not move; beyond two widths they move without
+// restriction.
+TEST(Smoothing, KeepsLocations) {
   const Region plate = waved(4, 0.06);
   const Vec2 kept(20, 4);
   const Region all = smooth(plate),
@@ -76,10 +78,11 @@ TEST(Smoothing, KeepsPlaces) {
   EXPECT_NEAR(height(found, 23, 27), height(all, 23, 27), kTolerance);
 }
 
-// Waves of a whole number have no area, before and after.
+// A whole number of waves has no area, before and after.
 TEST(Smoothing, KeepsTheArea) { EXPECT_NEAR(area(smooth(waved(4, 0.06))), 160, 1e-4 * 160); }
 
-// Vertices on the domain, straight lines and regions without a feature stay bit for bit.
+// Vertices on the domain and straight lines do not change by a bit; nor does any region with
+// feature width zero.
 TEST(Smoothing, LeavesLinesAlone) {
   const Region plate{{{0, 0}, {40, 0}, {40, 3}, {20, 6}, {0, 3}}, {}};
   const std::vector<Region> same = smoothed({&plate, 1}, kDomain, {}, {}, 0, kTolerance);
@@ -87,14 +90,14 @@ TEST(Smoothing, LeavesLinesAlone) {
   const Region found = smooth(plate);
   for (const Vec2& corner : {plate.outer[0], plate.outer[1], plate.outer[2], plate.outer[4]})
     EXPECT_EQ(std::count(found.outer.begin(), found.outer.end(), corner), 1);
-  // The ridge turns by 17 degrees: it is rounded.
+  // The ridge of 17 degrees is rounded.
   const auto top = std::max_element(found.outer.begin(), found.outer.end(),
                                     [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); });
   EXPECT_LT(top->y(), 6 - 0.02);
   EXPECT_GT(top->y(), 6 - 0.12 - kTolerance);
 }
 
-// A hole of the radius of a fillet, 0.8 features, is as round and as large as it was to 2 %.
+// A hole with the radius of a fillet, 0.8 features, keeps its shape and size to 2 %.
 TEST(Smoothing, KeepsFillets) {
   const Vec2 center(20, 5);
   std::vector<Vec2> hole = circle_within(center, 0.8, 1e-4);
@@ -104,7 +107,7 @@ TEST(Smoothing, KeepsFillets) {
   for (const Vec2& p : found.holes[0]) EXPECT_NEAR((p - center).norm(), 0.8, 0.02 * 0.8);
 }
 
-// A hole that is symmetric about a line stays so to round-off.
+// A hole that is symmetric about a line remains symmetric to round-off.
 TEST(Smoothing, IsSymmetricAboutMirrors) {
   std::vector<Vec2> hole;
   for (const auto& [x, y] :
@@ -122,8 +125,8 @@ TEST(Smoothing, IsSymmetricAboutMirrors) {
   }
 }
 
-// Where rings would cross, the region stays as it is: two holes with a waved wall of 0.01 between
-// them, of which one is fixed.
+// If rings would cross, the region does not change: two holes, one of them fixed, have a wavy wall
+// of 0.01 between them.
 TEST(Smoothing, CrossesNothing) {
   std::vector<Vec2> left = {{5, 2}}, right = {{35, 2}};
   for (int k = 0; k <= 400; ++k) {

@@ -1,5 +1,5 @@
-// TDF of one component and the Heaviside: values, derivatives by all seven parameters, and the
-// unit slope that makes the band a length.
+// Shows that the TDF of one component and the Heaviside function have the right values, derivatives
+// by all seven parameters, and the unit slope that makes the band a length.
 
 #include "geometry/components/tdf.h"
 
@@ -37,7 +37,7 @@ TEST_P(EveryKind, HeavisideHasItsEndsItsMiddleAndNoSteps) {
   EXPECT_NEAR(heaviside(0, s).slope, middle * (1 - alpha) / band, 1e-15);
   for (const double end : {-band, band}) {  // value and slope are continuous
     const Heaviside in = heaviside(end * (1 - 1e-9), s), out = heaviside(end * (1 + 1e-9), s);
-    EXPECT_NEAR(in.value, out.value, 1e-15);  // flat there: 1e-9 squared
+    EXPECT_NEAR(in.value, out.value, 1e-15);  // the slope vanishes there: 1e-9 squared
     EXPECT_NEAR(in.slope, out.slope, 1e-8 / band);
     if (GetParam() == Kind::distance) {
       EXPECT_NEAR(in.curvature, 0, 1e-7 / (band * band));
@@ -61,8 +61,8 @@ TEST(ComponentTdf, TakesThePrintedValues) {
     const double sum = std::pow(x / c.half_length, 6) + std::pow(y / g, 6);
     EXPECT_NEAR(component_tdf(c, settings(Kind::paper), at.x(), at.y(), nullptr), 1 - sum,
                 1e-12 * (1 + sum));
-    // (1 - s)/|∇s| at this g outside, blended with about (1 - s) g towards the center, capped at g
-    // by an eighth-power mean; the slope of s by differences.
+    // The expected φ is (1 - s)/|∇s| at this g outside, blended with about (1 - s) g towards the
+    // center, limited to g by an eighth-power mean; the slope of s comes from differences.
     const auto s = [&](double X, double Y) {
       return std::pow(std::pow(X / c.half_length, 6) + std::pow(Y / g, 6), 1.0 / 6);
     };
@@ -73,15 +73,15 @@ TEST(ComponentTdf, TakesThePrintedValues) {
     const double rounded = 1 + inside * std::pow(1 - inside, 4);
     const double P = (1 - here) * (w / slope + (1 - w) * rounded * g);
     const double phi = P > 0 ? P * std::pow(1 + std::pow(P / g, 8), -0.125) : P;
-    // The difference quotient of the slope errs by h² s‴/6, with s‴ up to 1/g³ off the center.
+    // The error of the difference quotient is h² s‴/6, with s‴ up to 1/g³ off the center.
     if (here < 0.1) continue;
     EXPECT_NEAR(component_tdf(c, settings(Kind::distance), at.x(), at.y(), nullptr), phi, 1e-6);
   }
 }
 
-/// Largest error of the derivatives against central differences, relative to the largest
-/// derivative of the point. h = 1e-6: truncation h² φ'''/φ' is below 1e-8 for the sizes here (the
-/// shortest length is 0.03 / p), round-off 1e-16/h is 1e-10.
+/// Returns the largest error of the derivatives against central differences, relative to the
+/// largest derivative at the point. For h = 1e-6 the truncation h² φ'''/φ' is below 1e-8 for the
+/// sizes here (the shortest length is 0.03 / p), and the round-off 1e-16/h is 1e-10.
 double derivative_error(const Component& c, const TdfSettings& s, const Vec2& at) {
   double d[7];
   component_tdf(c, s, at.x(), at.y(), d);
@@ -107,7 +107,7 @@ TEST_P(EveryKind, DerivativesMeetDifferences) {
   for (int k = 0; k < 1000; ++k) {
     const Component c = random.next();
     const double x = random.uniform(-1.5, 1.5) * c.half_length, y = random.uniform(-0.2, 0.2);
-    if (std::hypot(x / c.half_length, y / 0.03) < 0.02) continue;  // wild second derivatives
+    if (std::hypot(x / c.half_length, y / 0.03) < 0.02) continue;  // large second derivatives
     EXPECT_LT(derivative_error(c, settings(GetParam()), point_of(c, x, y)), 1e-6)
         << "x/L " << x / c.half_length << " y " << y;
     ++tested;
@@ -124,7 +124,7 @@ TEST_P(EveryKind, CenterIsFiniteAndFlat) {
     if (GetParam() == Kind::paper) {
       EXPECT_NEAR(phi, 1, 1e-15);
     } else {
-      EXPECT_NEAR(phi, 0.15 * std::pow(2, -0.125), 1e-15);  // P = g under the cap
+      EXPECT_NEAR(phi, 0.15 * std::pow(2, -0.125), 1e-15);  // P = g with the limit
     }
     for (const double each : d) EXPECT_TRUE(std::isfinite(each));
   }
@@ -133,8 +133,8 @@ TEST_P(EveryKind, CenterIsFiniteAndFlat) {
   for (int q = 0; q < 4; ++q) EXPECT_EQ(d[q], 0) << q;  // by X0, Y0, L, θ
 }
 
-// φ is a length: across the flank, away from the corners, it falls by 1 per unit length. At
-// |x| = L/2 the exponent 6 leaves 1 - 5/6 (1/2)^6 = 0.987, a tapered g adds g'²/2.
+// φ is a length: across a long side, away from the corners, it falls by 1 per unit length. At |x| =
+// L/2 the exponent 6 leaves 1 - 5/6 (1/2)^6 = 0.987, and a tapered g adds g'²/2.
 TEST(ComponentTdf, HasUnitSlopeAcrossTheFlank) {
   RandomComponents random(3);
   for (int k = 0; k < 300; ++k) {
@@ -154,15 +154,16 @@ TEST(ComponentTdf, HasUnitSlopeAcrossTheFlank) {
   }
 }
 
-// The same at a tip, where 1 - s alone falls by 1/L and (1 - s) g by g/L only: this is what keeps
-// the band from bridging gaps between the ends of components.
+// φ must fall by 1 per unit length also at a tip, where 1 - s alone falls by 1/L and (1 - s) g by
+// g/L only; therefore the band does not bridge gaps between the ends of components.
 TEST(ComponentTdf, HasUnitSlopeAtTheTip) {
   const Component c{
       .center = {0.3, 0.2}, .half_length = 0.5, .angle = 0.3, .c1 = 0.1, .c2 = 0.1, .c3 = 0.1};
   const TdfSettings s = settings(Kind::distance);
   for (const double beyond : {-0.04, -0.01, 0.01, 0.04, 0.08}) {
     const Vec2 at = point_of(c, c.half_length + beyond, 0.02);
-    // Inside, w and the cap bend it: at 0.4 g by 2 (0.08) (1 - g/L) of it.
+    // Inside the component, the weight of the end and the limit of the distance change the value:
+    // at a depth of 0.4 half-thicknesses g by the fraction 2 (0.08) (1 - g/L).
     EXPECT_NEAR(component_tdf(c, s, at.x(), at.y(), nullptr), -beyond, 0.006) << beyond;
   }
 }

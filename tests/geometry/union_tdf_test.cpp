@@ -1,5 +1,5 @@
-// The union of components on a grid: culling loses nothing, the smooth maximum keeps its bounds,
-// and the chain rule passes the Taylor test.
+// Shows that the union of components on a grid is right: culling loses nothing, the smooth maximum
+// is within its bounds, and the chain rule passes the Taylor test.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ TdfSettings settings(Kind kind) {
   return s;
 }
 
-/// Components in and around the domain of kGrid.
+/// Returns components in and around the domain of kGrid.
 std::vector<Component> random_design(unsigned seed, int count = 20) {
   RandomComponents random(seed);
   std::vector<Component> all = random.several(count, 2.2, 1.2);
@@ -35,7 +35,7 @@ std::vector<Component> random_design(unsigned seed, int count = 20) {
   return all;
 }
 
-/// Every component at every node, straight from the definition.
+/// Returns φ from every component at every node, directly by the definition.
 VectorXd brute_force(const std::vector<Component>& components, const TdfSettings& s) {
   const double cut = -s.band - (s.kind == Kind::paper ? 1 : 10 / s.sharpness);
   VectorXd phi(kGrid.n_nodes());
@@ -63,7 +63,8 @@ TEST_P(EveryUnion, CullingLosesNothing) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     std::vector<Component> design = random_design(seed);
     design[0].c1 = 1e-6;  // a needle: its end value is the minimum, its reach is the longest
-    design[1].angle = 0;  // lines x = constant and y = constant of the frame meet the grid's
+    // lines x = constant and y = constant of the frame are parallel to the grid
+    design[1].angle = 0;
     design[2].angle = std::acos(0.0);
     const TdfSettings s = settings(GetParam());
     UnionTdf tdf(kGrid, s);
@@ -93,7 +94,7 @@ TEST_P(EveryUnion, NodesNoComponentReachesAreVoid) {
   EXPECT_EQ(gradient.norm(), 0);
 }
 
-// max <= KS <= max + log(n)/λ.
+// The bounds are max <= KS <= max + log(n)/λ.
 TEST(SmoothMaximum, StaysBetweenItsBounds) {
   const TdfSettings s = settings(Kind::distance);
   for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -133,9 +134,9 @@ TEST(SmoothMaximum, OfCoincidentComponentsIsLogTwoHigher) {
   EXPECT_GT(inside, 50);
 }
 
-// φ has no step where a component comes into reach. Two level bars, one just below a node
-// (φ₁ = -0.9 ε), one above it, 1e-9 before and after its φ₂ passes the cut: without the
-// continuity of the sum φ would step by exp(λ (cut - φ₁))/λ, about 4e-7 here.
+// φ is continuous where a component comes into reach. One level bar is just below a node (φ₁ = -0.9
+// ε), and one above it is 1e-9 before and after the cut by its φ₂. If the sum were not continuous,
+// φ would jump by exp(λ (cut - φ₁))/λ, about 4e-7 here.
 TEST(SmoothMaximum, IsContinuousWhereComponentsComeIntoReach) {
   const TdfSettings s = settings(Kind::distance);
   const double g = 0.1, cut = -s.band - 10 / s.sharpness;
@@ -153,9 +154,10 @@ TEST(SmoothMaximum, IsContinuousWhereComponentsComeIntoReach) {
   EXPECT_NEAR(phi[0], phi[1], 1e-12);
 }
 
-// Two level bars as before, the second one z = λ (φ₂ - φ_cut) above its reach, in and beyond the
-// stretch of 2 over which it gains its weight: the density's second derivative by the second bar's
-// height, small as it is, is that of differences of the first one, from its reach on upwards.
+// Of two level bars, the second one is z = λ (φ₂ - φ_cut) above its reach, within and beyond the
+// range of 2 over which it gains its weight. The second derivative of the density by the height of
+// the second bar, although small, must equal differences of the first derivative from the beginning
+// of the reach.
 TEST(SmoothMaximum, BendsOnlyGraduallyWhereComponentsComeIntoReach) {
   const TdfSettings s = settings(Kind::distance);
   const double g = 0.1, cut = -s.band - 10 / s.sharpness;
@@ -183,7 +185,7 @@ TEST(SmoothMaximum, BendsOnlyGraduallyWhereComponentsComeIntoReach) {
   for (const double z : {0.3, 1.0, 1.7, 3.0})
     EXPECT_NEAR(bend(z), (slope(z - h) - slope(z + h)) * s.sharpness / (2 * h), 1e-6 * largest)
         << z;
-  for (const double z : {0.0, 2.0})  // third derivatives of S are below 15: 15 of 2e-6
+  for (const double z : {0.0, 2.0})  // third derivatives of S are below 15: 15 times 2e-6
     EXPECT_NEAR(bend(z - 1e-6), bend(z + 1e-6), 1e-4 * largest) << z;
   EXPECT_EQ(slope(-1e-3), 0);
 }
@@ -199,12 +201,12 @@ std::vector<Component> moved(const std::vector<Component>& design, const VectorX
   return result;
 }
 
-/// Slope of log |f(p + h d) - f(p) - h df·d| over log h, h = h0 ... h0/1000 in 13 steps, where d
-/// moves components by up to one cell per unit of h.
+/// Returns the slope of log |f(p + h d) - f(p) - h df·d| over log h, h = h0 ... h0/1000 in 13
+/// steps, where d moves components by up to one cell per unit of h.
 ///
-/// f = Σ w_k H_k is of order 100. With random signs of w_k the curvatures of the nodes nearly
-/// cancel; w_k with the sign of H_k'' along d adds them up: the remainder is about 70 h², which at
-/// h = 1e-6 is 1000 times round-off. At h0 = 1e-3 few nodes cross a line where H is only C1.
+/// f = Σ w_k H_k is of order 100. With random signs of w_k the curvatures of the nodes would nearly
+/// cancel; with the sign of H_k'' along d they add up: the remainder is about 70 h², which at h =
+/// 1e-6 is 1000 times round-off. At h0 = 1e-3 few nodes cross a line where H is only C1.
 double taylor_order(Kind kind, unsigned seed, double h0) {
   const std::vector<Component> design = random_design(seed);
   RandomComponents random(seed + 100);
@@ -290,11 +292,11 @@ TEST(UnionTdf, InfluenceIsWhatTakingAComponentOutChanges) {
     const double expected =
         std::max((tdf.density() - less.density()).tail(kept).cwiseAbs().maxCoeff(),
                  (tdf.eroded() - less.eroded()).tail(kept).cwiseAbs().maxCoeff());
-    // Where the largest term of a sum leaves, what remains carries its round-off.
+    // When the largest term of a sum is removed, the remaining sum has its round-off.
     EXPECT_NEAR(influence[c], expected, 1e-6) << c;
   }
   EXPECT_EQ(influence[design.size() - 3], 0);
-  EXPECT_LT(influence.back(), 1e-5);  // inside a larger one, as deep as the sharpness can tell
+  EXPECT_LT(influence.back(), 1e-5);  // inside a larger one, to the accuracy of the smooth maximum
   EXPECT_GT(influence[design.size() - 2], 0.5);
 }
 
@@ -331,8 +333,9 @@ TEST(UnionTdf, RefusesWhatIsNotANumber) {
   EXPECT_THROW(UnionTdf(kGrid, s), Error);
 }
 
-// f = Σ a H + b E + c E² / 2 of the nodes with random a, b, c: its Hessian against central
-// differences of its gradient. h = 1e-6: truncation is h² of fourth derivatives, 1e-12 / band³.
+// The Hessian of f = Σ a H + b E + c E² / 2 over the nodes with random a, b, c is compared with
+// central differences of its gradient. For h = 1e-6 the truncation is h² times fourth derivatives,
+// 1e-12 / band³.
 TEST(Curvature, MeetsDifferencesOfTheGradient) {
   TdfSettings s = settings(Kind::distance);
   s.erosion = 0.4 * kGrid.dx();

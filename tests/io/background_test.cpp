@@ -1,5 +1,5 @@
-// Tasks are done in their order, all of them before wait() returns, and what one throws reaches the
-// one who asked for it.
+// Shows that tasks are done in their order, that all of them are done before wait() returns, and
+// that the caller gets the exception of a task.
 #include "io/background.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST_P(EveryBackground, KeepsTheOrder) {
     for (int k = 0; k < 100; ++k) EXPECT_EQ(done[static_cast<size_t>(k)], k);
     background.then([&done] { done.push_back(100); });
   }
-  EXPECT_EQ(done.size(), 101u);  // the end waits, too
+  EXPECT_EQ(done.size(), 101u);  // the destructor waits, too
 }
 
 TEST_P(EveryBackground, TellsWhatATaskThrew) {

@@ -1,5 +1,5 @@
-// Case files: values arrive as written, and every error names file, line, key, value and what is
-// allowed, or the option of the command line that brought it.
+// Shows that the values of case files are read as written, and that every error names file, line,
+// key, value and the allowed values, or the option of the command line that set the value.
 #include "io/case_files/case_file.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ using Overrides = std::vector<std::string>;
 
 class CaseFiles : public ::testing::Test {
  protected:
-  /// Message of the error that `read` meets, with the folder of the test removed.
+  /// Returns the message of the error that `read` causes, without the folder of the test.
   std::string error(const std::function<void(const Table&)>& read, const Overrides& changes = {},
                     const std::string& text = kText) {
     try {
@@ -56,7 +56,7 @@ class CaseFiles : public ::testing::Test {
   Scratch scratch_;
 };
 
-// Keys as the tests need them, not in the book.
+// Keys for these tests only, which are not in the list of all keys.
 Key quick(const std::string& table, const std::string& name) {
   Key out;
   out.tables = {table};
@@ -109,20 +109,21 @@ TEST_F(CaseFiles, ListsOfLists) {
   EXPECT_TRUE(root.is_list_of_strings(quick("", "names")));
   for (const char* key : {"table", "mixed", "none"})
     EXPECT_FALSE(root.is_list_of_strings(quick("", key)));
-  const std::string place = "plate.toml:1:9: table = [[0, 1.5], [1, -2]]: a list: lists of ";
+  const std::string location = "plate.toml:1:9: table = [[0, 1.5], [1, -2]]: a list: lists of ";
   EXPECT_EQ(
       error([](const Table& t) { t.rows(quick("", "table").rows(any_number("it"), 3)); }, {}, text),
-      place + "3 numbers; it is a finite number");
+      location + "3 numbers; it is a finite number");
   EXPECT_EQ(
       error([](const Table& t) { t.rows(quick("", "table").rows(not_negative("it", "m"), 2)); }, {},
             text),
-      place + "2 numbers; it is not negative [m]");
+      location + "2 numbers; it is not negative [m]");
   EXPECT_EQ(
       error([](const Table& t) { t.rows(quick("", "mixed").rows(any_number("it"), 1)); }, {}, text),
       "plate.toml:4:9: mixed = [1, \"b\"]: a list: lists of 1 numbers; it is a finite number");
 }
 
-// Those of the command line lie where it is typed.
+// Paths in a case are relative to its folder; paths of the command line are relative to the working
+// folder.
 TEST_F(CaseFiles, FilesLieBesideTheCase) {
   const std::string path = scratch_.write("plate.toml", kText),
                     other = scratch_.write("other.toml", "title = '/elsewhere.csv'\n");
@@ -145,10 +146,9 @@ TEST_F(CaseFiles, RangeIsSaidWithUnit) {
 }
 
 TEST_F(CaseFiles, WrongTypesAreSaid) {
-  EXPECT_EQ(
-      error([](const Table& root) { arm(root).number(kThickness.called("a size")); }),
-      "plate.toml:16:13: body.arm.thickness = \"thin\": a size is positive [m]; a number stands "
-      "without quotes");
+  EXPECT_EQ(error([](const Table& root) { arm(root).number(kThickness.called("a size")); }),
+            "plate.toml:16:13: body.arm.thickness = \"thin\": a size is positive [m]; a number is "
+            "written without quotes");
   EXPECT_EQ(error([](const Table& root) { arm(root).boolean(quick("body", "flag").boolean()); }),
             "plate.toml:17:8: body.arm.flag = 1: true or false");
   EXPECT_EQ(error([](const Table& root) {
@@ -158,7 +158,7 @@ TEST_F(CaseFiles, WrongTypesAreSaid) {
   EXPECT_EQ(error([](const Table& root) { root.table(a_table("title")); }),
             "plate.toml:1:9: title = \"a plate\": [title] is a table");
   EXPECT_EQ(error([](const Table& root) { root.tables(quick("", "time").tables_of()); }),
-            "plate.toml:3:1: [time]: a list of tables, each under its own [[time]]");
+            "plate.toml:3:1: [time]: a list of tables, each with the heading [[time]]");
   EXPECT_EQ(error([](const Table& root) { plate(root).numbers(kAnyCounts.counted(3)); }),
             "plate.toml:10:12: body.plate.elements = [10, 2]: a list of 3: a count is positive");
   EXPECT_TRUE(starts(
@@ -192,7 +192,7 @@ TEST_F(CaseFiles, ChoicesListWhatIsAllowed) {
         plate(root).choices(quick("body", "terms").names_of("a term"), terms);
       }),
       "plate.toml:11:9: body.plate.terms = [\"inertia\", \"inertia\"]: a list: a term is one of "
-      "'inertia', 'membrane', none twice");
+      "'inertia', 'membrane', each name at most once");
 }
 
 TEST_F(CaseFiles, MissingKeysAreNamed) {
@@ -202,7 +202,7 @@ TEST_F(CaseFiles, MissingKeysAreNamed) {
             "plate.toml:7:1: body.plate.width is missing: a width is positive [m]");
   EXPECT_EQ(error([](const Table& root) { root.table(kEsl); }),
             "plate.toml:1:1: esl is missing: [esl] is a table");
-  // A misspelt key is the better explanation.
+  // A misspelled key is reported instead of the missing one.
   EXPECT_EQ(error([](const Table& root) {
               root.table(kTime).number(a_number("time", "steps", positive("it")));
             }),
@@ -220,7 +220,7 @@ TEST_F(CaseFiles, UnknownKeysAreErrors) {
               root.has(kTitle);
               root.has(kBody);
             }),
-            "plate.toml:3:1: [time]: unknown key; known here: body title");
+            "plate.toml:3:1: [time]: unknown key; the keys allowed here are body, title");
   EXPECT_EQ(error(touch_all), "");
   EXPECT_EQ(error(touch_all, {"foo=1"}), "");
   EXPECT_EQ(error(
@@ -240,17 +240,17 @@ TEST_F(CaseFiles, UnknownKeysFillOneScreenAtMost) {
       },
       changes);
   EXPECT_EQ(std::count(words.begin(), words.end(), '\n'), 19);
-  EXPECT_TRUE(ends(words, "plate.toml: and 81 more")) << words;
+  EXPECT_TRUE(ends(words, "81 more errors are not listed")) << words;
 }
 
-// Columns count characters as editors do, not bytes.
+// Columns count characters like editors do, not bytes.
 TEST_F(CaseFiles, ColumnsCountCharacters) {
   const auto read = [](const Table& root) { root.number(a_number("", "a", positive("it"))); };
   EXPECT_EQ(error(read, {}, "\n  a = -1\n"), "plate.toml:2:7: a = -1: it is positive");
   EXPECT_TRUE(starts(error(read, {}, "b = { c = \"äöü\" }\na = \"ä\"\n"), "plate.toml:2:5: a"));
 }
 
-// An entry goes by a name that is a word and its own, else by its number.
+// An entry is labelled by its name if the name is a word and unique, else by its number.
 TEST_F(CaseFiles, EntriesAreLabelled) {
   std::string text;
   for (const char* entry : {"name = \"a\"", "body = \"b\"", "name = \"b\"", "name = \"c d\"",
@@ -263,7 +263,7 @@ TEST_F(CaseFiles, EntriesAreLabelled) {
   EXPECT_EQ(entry_paths(one, "one"), std::vector<std::string>{"one"});
 }
 
-// Where a path leads, with what was read for keys that are not there.
+// A path is located in the file; a key that is not given is located at its table.
 TEST_F(CaseFiles, PathsAreFound) {
   const CaseFile file(scratch_.write("plate.toml", kText), Overrides{"time.end=2"});
   const std::string start = (scratch_ / "plate.toml") + ":";
@@ -300,7 +300,7 @@ TEST_F(CaseFiles, FilesThatAreNone) {
   EXPECT_EQ(error(touch_all, {}, ""), "");
 }
 
-TEST_F(CaseFiles, OverridesReachEveryPlace) {
+TEST_F(CaseFiles, OverridesReachEveryLocation) {
   const auto number = [&](const Overrides& changes, auto find) {
     const CaseFile file(scratch_.write("plate.toml", kText), changes);
     return find(file.root()).number(kThickness);
@@ -323,12 +323,13 @@ TEST_F(CaseFiles, OverridesAreLocatedByTheirOption) {
                   {"body.plate.thickness=-1"}),
             "--set body.plate.thickness=-1: it is positive [m]");
   EXPECT_EQ(error(touch_all, {"body.thickness=1"}),
-            "--set body.thickness=1: body has 2 entries; write body.ENTRY.KEY with one of plate, "
-            "arm");
-  EXPECT_EQ(error(touch_all, {"time.end"}), "--set time.end: an override is written KEY=VALUE");
+            "--set body.thickness=1: body has 2 entries; write body.ENTRY.KEY, where ENTRY is one "
+            "of plate, arm");
+  EXPECT_EQ(error(touch_all, {"time.end"}),
+            "--set time.end: an override has the form KEY=VALUE, on one line");
   EXPECT_EQ(error(touch_all, {"time.end.x=1"}),
-            "--set time.end.x=1: time.end has no keys of its own");
-  EXPECT_TRUE(contains(error(touch_all, {"a..b=1"}), "KEY is a dotted path"));
+            "--set time.end.x=1: time.end is not a table and has no keys");
+  EXPECT_TRUE(contains(error(touch_all, {"a..b=1"}), "KEY is a path with dots"));
   EXPECT_TRUE(starts(error(touch_all, {"a=1 2"}), "--set a=1 2: VALUE is not TOML"));
   EXPECT_EQ(error(
                 [](const Table& root) {
@@ -350,7 +351,7 @@ TEST_F(CaseFiles, OverridesWithoutAValueTakeKeysAway) {
   EXPECT_TRUE(again.root().has(kTime));
 }
 
-// The effective case is a case again, with the changes in it and every other value unchanged.
+// The effective case is again a case, with the changes in it and every other value unchanged.
 TEST_F(CaseFiles, EffectiveTextReadsBack) {
   const CaseFile changed(
       scratch_.write("plate.toml", kText),

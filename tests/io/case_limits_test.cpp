@@ -1,5 +1,5 @@
-// What a recursive parser of TOML would follow into the ground is refused with line and limit; what
-// only looks like it, in strings and comments, is not.
+// Shows that texts which would exhaust the stack of a recursive TOML parser are refused with line
+// and limit, but not similar text in strings and comments.
 #include "io/case_files/case_limits.h"
 
 #include "geometry/base.h"
@@ -28,15 +28,15 @@ std::string complaint(const std::string& text) {
 TEST(CaseLimits, OfKeysAndNesting) {
   const std::string start = "b = 1\nc = \"\"\"\n\n\"\"\"\n";  // the next line is the fifth
   EXPECT_EQ(complaint(start + repeated("a.", 20'000) + "a = 1"),
-            "a.toml:5: the parts of a key or number between dots are at most 100");
+            "a.toml:5: a key or a number has at most 100 parts between dots");
   EXPECT_EQ(complaint(start + "[" + repeated("a.", 20'000) + "a]"),
-            "a.toml:5: the parts of a key or number between dots are at most 100");
+            "a.toml:5: a key or a number has at most 100 parts between dots");
   EXPECT_EQ(complaint(start + "x = " + repeated("[", 20'000)),
-            "a.toml:5: lists and tables in each other are at most 100");
+            "a.toml:5: lists and tables are nested at most 100 levels deep");
   EXPECT_EQ(complaint(start + "x = " + repeated("{a = ", 20'000)),
-            "a.toml:5: lists and tables in each other are at most 100");
+            "a.toml:5: lists and tables are nested at most 100 levels deep");
   EXPECT_EQ(complaint(start + repeated("a", 5000) + " = 1"),
-            "a.toml:5: the characters of a key are at most 2000");
+            "a.toml:5: a key has at most 2000 characters");
 }
 
 TEST(CaseLimits, LeaveStringsAndCommentsAlone) {
@@ -49,7 +49,7 @@ TEST(CaseLimits, LeaveStringsAndCommentsAlone) {
     EXPECT_EQ(complaint(text), "") << text.substr(0, 20);
 }
 
-/// What the limits alone refuse.
+/// Returns the message of the check of the limits alone.
 std::string limits_of(const std::string& text) {
   try {
     check_case_limits(text, "a.toml");
@@ -59,7 +59,8 @@ std::string limits_of(const std::string& text) {
   return "";
 }
 
-// The scan itself has to end at texts that are no TOML; it still sees what is too deep before that.
+// The check must end for texts that are not TOML, and must still find excessive nesting before the
+// error.
 TEST(CaseLimits, EndAtBrokenTexts) {
   for (const std::string& text : std::vector<std::string>{"a = \"", "a = \"\\", "a = '''",
                                                           "a = \"\"\"\\", "#", "]]]", "\"\n"}) {

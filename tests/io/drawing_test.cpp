@@ -1,5 +1,6 @@
-// Drawings of other programs: a plate of 80 x 50 mm with two holes of 5 and 8 mm radius, said in
-// every way that is read, has its analytic area; what is no outline is refused, and named.
+// Shows that drawings of other programs are read: a plate of 80 x 50 mm with two holes of 5 and 8
+// mm radius, written with every supported entity, has its analytic area; invalid outlines are
+// refused with a reason.
 #include "io/drawings/drawing.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ std::string pair(int code, const std::string& value) {
 }
 std::string pair(int code, double value) { return pair(code, std::to_string(value)); }
 
-/// An entity: its codes and numbers one after the other, x of a point before its y.
+/// Returns an entity with its codes and numbers in order, x of a point before its y.
 std::string entity(const std::string& name, const std::vector<std::pair<int, double>>& values,
                    const std::string& layer = "0") {
   std::string out = pair(0, name) + pair(8, layer);
@@ -51,7 +52,7 @@ const std::string kFrame =
     line(0, 0, 80, 0) + line(80, 50, 80, 0) + line(0, 50, 0, 0) + line(0, 50, 80, 50);
 const std::string kHoles = circle(20, 25, 5) + circle(50, 25, 8);
 constexpr double kArea = 80e-3 * 50e-3 - kPi * (25e-6 + 64e-6);
-/// Sides lie within 1e-5 of 80 mm of the circles.
+/// Tolerance of the area: sides are within 1e-5 of 80 mm from the circles.
 constexpr double kOff = 2 * kPi * 13e-3 * 80e-3 * kDrawingTolerance;
 
 class Drawings : public ::testing::Test {
@@ -73,7 +74,8 @@ class Drawings : public ::testing::Test {
   void expect_plate(const Region& r) const {
     EXPECT_EQ(r.holes.size(), 2u);
     EXPECT_NEAR(area(r), kArea, kOff);
-    EXPECT_GE(area(r), kArea - 1e-16);  // vertices lie on the circles: holes lack a little
+    // vertices are on the circles, so that polygons of holes are slightly smaller
+    EXPECT_GE(area(r), kArea - 1e-16);
     const Box box = bounds_of(r.outer);
     EXPECT_NEAR(box.lower.norm(), 0, 1e-12);
     EXPECT_NEAR((box.upper - Vec2(0.08, 0.05)).norm(), 0, 1e-12);
@@ -104,10 +106,11 @@ TEST_F(Drawings, UnitsAreThoseOfTheFileOrGiven) {
   EXPECT_NEAR(width(5, {}), 0.8, 1e-15);
   EXPECT_NEAR(width(0, 1e-3), 0.08, 1e-15);
   EXPECT_NEAR(width(6, 1e-3), 0.08, 1e-15);
-  EXPECT_TRUE(contains(complaint("part.dxf", dxf(kFrame, 0)), "says no unit of length: `unit`"));
+  EXPECT_TRUE(
+      contains(complaint("part.dxf", dxf(kFrame, 0)), "contains no unit of length: `unit`"));
 }
 
-// A half circle has the bulge 1: an arc of 180 degrees counterclockwise.
+// A half circle has the bulge 1, which is an arc of 180 degrees counterclockwise.
 TEST_F(Drawings, PolylinesHaveArcs) {
   const auto vertices = [](double bulge) {
     return std::vector<std::pair<int, double>>{{90, 4},  {70, 1}, {10, 0},     {20, 0},  {42, 0},
@@ -120,7 +123,7 @@ TEST_F(Drawings, PolylinesHaveArcs) {
   EXPECT_NEAR(bounds_of(out.outer).upper.x(), 85e-3, 1e-6);
   const Region in = plate("part.dxf", dxf(entity("LWPOLYLINE", vertices(-1))));
   EXPECT_NEAR(area(in), box - half, kPi * 25e-3 * 85e-3 * kDrawingTolerance);
-  // The same of a quarter circle by POLYLINE, and of a chain with an arc that goes backwards.
+  // A quarter circle by POLYLINE, and by a chain with an arc in reverse direction.
   const double quarter = std::tan(kPi / 8);
   std::string old = entity("POLYLINE", {{66, 1}, {70, 1}});
   old += entity("VERTEX", {{10, 0}, {20, 0}}) +
@@ -141,7 +144,7 @@ TEST_F(Drawings, EllipsesHaveTheirArea) {
   EXPECT_NEAR(area(r), 4e-3 - kPi * 50e-6, 60e-3 * 80e-3 * kDrawingTolerance);
 }
 
-// Four rational quadratic splines are a circle; the same curve in one SPLINE of nine points.
+// Four rational quadratic splines form a circle; here it is one SPLINE of nine points.
 TEST_F(Drawings, SplinesOfACircleHaveItsArea) {
   const double r = 20, w = std::sqrt(0.5);
   const Vec2 corners[] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
@@ -157,11 +160,11 @@ TEST_F(Drawings, SplinesOfACircleHaveItsArea) {
   ASSERT_EQ(rings.size(), 1u);
   for (const Vec2& p : rings[0]) EXPECT_NEAR((p - Vec2(0.04, 0.025)).norm(), 0.02, 1e-6 * 0.02);
   EXPECT_NEAR(area(region_of(rings)), kPi * 4e-4, 2 * kPi * 20e-3 * 40e-3 * kDrawingTolerance);
-  codes.erase(codes.begin() + 5);  // a knot
+  codes.erase(codes.begin() + 5);  // removes a knot
   EXPECT_TRUE(contains(complaint("part.dxf", dxf(entity("SPLINE", codes))), "knots"));
 }
 
-// A straight line as a spline of degree one joins others.
+// A straight line as a spline of degree one can be joined with others.
 TEST_F(Drawings, SplinesCloseChains) {
   const std::string side = entity("SPLINE", {{70, 8},
                                              {71, 1},
@@ -186,9 +189,9 @@ TEST_F(Drawings, LayersAndBlocksThatAreNotMeantStayOut) {
   const std::string all = kFrame + circle(20, 25, 5, "HOLES") + circle(50, 25, 8, "HOLES") +
                           circle(0, 0, 30, "MARKS") + entity("TEXT", {{10, 1}, {20, 1}, {40, 2}});
   expect_plate(plate("part.dxf", dxf(all), {{}, {"0", "HOLES"}}));
-  EXPECT_TRUE(contains(complaint("part.dxf", dxf(all)), "cross, touch or lie elsewhere"));
+  EXPECT_TRUE(contains(complaint("part.dxf", dxf(all)), "cross or touch, or a hole lies outside"));
   EXPECT_TRUE(contains(complaint("part.dxf", dxf(all), {{}, {"0", "HOLE"}}),
-                       "nothing is on a layer 'HOLE'"));
+                       "the layer 'HOLE' contains no curves"));
   const std::string block =
       "0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n8\n0\n2\nbolt\n70\n0\n10\n0\n20\n0\n" + circle(0, 0, 100) +
       "0\nENDBLK\n8\n0\n0\nENDSEC\n";
@@ -199,7 +202,7 @@ TEST_F(Drawings, SvgHasPathsAndShapes) {
   const std::string head =
       "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"80mm\" "
       "height=\"50mm\" viewBox=\"10 20 160 100\">";
-  // Two units to a millimetre; y points down.
+  // There are two units to a millimetre; y points downwards.
   const std::string shapes =
       head + R"svg(<defs><rect width="1" height="1"/></defs><title>plate</title>
 <rect x="10" y="20" width="160" height="100"/><g transform="translate(10 20)">
@@ -210,14 +213,14 @@ TEST_F(Drawings, SvgHasPathsAndShapes) {
 <path transform="matrix(2 0 0 2 10 20)" d="M 45 25 m -3 0 a 8 8 0 1 0 16 0 a 8 8 0 1 0 -16 0 z
  M 15,25 A 5 5 0 0 1 25 25 A 5,5,0,0,1,15,25"/></svg>)svg";
   expect_plate(plate("part.svg", paths));
-  // A parabola (quadratic Bezier) of height 10 over 40: its segment has 2/3 of the rectangle.
+  // A parabola (quadratic Bezier curve) of height 10 over 40 encloses 2/3 of the rectangle.
   const std::string curve = head + R"svg(<path d="M 20 60 q 40 -40 80 0 z"/></svg>)svg";
   EXPECT_NEAR(area(plate("part.svg", curve)), 2. / 3 * 40e-3 * 10e-3, 45e-3 * 40e-3 * 1e-5);
-  // Without a unit; in px.
+  // Without a unit, or in px.
   for (const std::string size : {"", "width=\"160\" height=\"100\"", "width=\"100%\""}) {
     std::string bare = paths;
     bare.replace(bare.find("width=\"80mm\" height=\"50mm\""), 26, size);
-    EXPECT_TRUE(contains(complaint("part.svg", bare), "says no unit"));
+    EXPECT_TRUE(contains(complaint("part.svg", bare), "contains no unit"));
     expect_plate(plate("part.svg", bare, {0.5e-3, {}}));
   }
 }
@@ -240,29 +243,33 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"open", "a.dxf", dxf(line(0, 0, 1, 0) + line(1, 0, 1, 1)), "a curve is open: it ends"},
         Bad{"three_ends", "a.dxf", dxf(kFrame + line(80, 0, 9, 9) + line(9, 9, 0, 0)),
             "more than two curves meet"},
-        Bad{"crossing", "a.dxf", dxf(kFrame + circle(0, 0, 20)), "cross, touch or lie elsewhere"},
-        Bad{"apart", "a.dxf", dxf(circle(0, 0, 20) + circle(50, 0, 5)), "lie elsewhere"},
-        Bad{"nested", "a.dxf", dxf(kFrame + circle(40, 25, 20) + circle(40, 25, 10)), "elsewhere"},
-        Bad{"twice", "a.dxf", dxf(kFrame + kHoles + circle(20, 25, 5)), "lie elsewhere"},
+        Bad{"crossing", "a.dxf", dxf(kFrame + circle(0, 0, 20)),
+            "cross or touch, or a hole lies outside"},
+        Bad{"apart", "a.dxf", dxf(circle(0, 0, 20) + circle(50, 0, 5)), "a hole lies outside"},
+        Bad{"nested", "a.dxf", dxf(kFrame + circle(40, 25, 20) + circle(40, 25, 10)),
+            "a hole lies outside"},
+        Bad{"twice", "a.dxf", dxf(kFrame + kHoles + circle(20, 25, 5)), "a hole lies outside"},
         Bad{"itself", "a.dxf",
             dxf(line(0, 0, 1, 1) + line(1, 1, 1, 0) + line(1, 0, 0, 1) + line(0, 1, 0, 0)),
             "crosses or touches itself"},
-        Bad{"no_curve", "a.dxf", dxf(""), "no closed curve is in it"},
+        Bad{"no_curve", "a.dxf", dxf(""), "it contains no closed curve"},
         Bad{"a_point", "a.dxf", dxf(circle(1, 1, 0)), "has no area"},
         Bad{"insert", "a.dxf", dxf(pair(0, "INSERT") + pair(8, "0") + pair(2, "bolt")), "INSERT"},
-        Bad{"no_dxf", "a.dxf", "hello", "this is no DXF file"},
-        Bad{"empty", "a.dxf", "", "this is no DXF file"},
-        Bad{"far", "a.dxf", dxf(circle(1e33, 0, 1)), "not a number below 1e30"},
+        Bad{"no_dxf", "a.dxf", "hello", "this is not a DXF file"},
+        Bad{"empty", "a.dxf", "", "this is not a DXF file"},
+        Bad{"far", "a.dxf", dxf(circle(1e33, 0, 1)), "not a finite number below 1e30"},
         Bad{"other", "a.step", "ISO-10303-21;", "a drawing is a .dxf or .svg file"},
-        Bad{"no_xml", "a.svg", "<svg><path", "this is no XML"},
-        Bad{"no_svg", "a.svg", "<html/>", "this is no SVG file"},
-        Bad{"nothing", "a.svg", kSvg + "</svg>", "no closed curve is in it"},
+        Bad{"no_xml", "a.svg", "<svg><path", "this is not an XML"},
+        Bad{"no_svg", "a.svg", "<html/>", "this is not an SVG file"},
+        Bad{"nothing", "a.svg", kSvg + "</svg>", "it contains no closed curve"},
         Bad{"open_path", "a.svg", kSvg + "<path d='M 0 0 L 1 0 L 1 1'/></svg>", "a curve is open"},
         Bad{"bad_path", "a.svg", kSvg + "<path d='M 0 0 K 1 0'/></svg>", "path: "},
-        Bad{"bad_number", "a.svg", kSvg + "<polygon points='0 0 1 x'/></svg>", "'x' is no number"},
+        Bad{"bad_number", "a.svg", kSvg + "<polygon points='0 0 1 x'/></svg>",
+            "'x' is not a number"},
         Bad{"bad_turn", "a.svg", kSvg + "<g transform='turn(3)'></g></svg>", "transform 'turn'"},
         Bad{"use", "a.svg", kSvg + "<use href='#a'/></svg>", "use: copies"},
-        Bad{"percent", "a.svg", kSvg + "<rect width='50%' height='1'/></svg>", "units of the page"},
+        Bad{"percent", "a.svg", kSvg + "<rect width='50%' height='1'/></svg>",
+            "the sizes of shapes must have no unit"},
         Bad{"box", "a.svg", "<svg viewBox='0 0 1'/>", "viewBox"}),
     [](const auto& test) { return test.param.name; });
 
@@ -281,7 +288,7 @@ TEST_F(Drawings, AreRegularFiles) {
   EXPECT_THROW(read_drawing(scratch_ / "pipe.dxf", {}), Error);
 }
 
-// Entities that call for each other without end are XML, too.
+// Entities that reference each other recursively are valid XML and must not be expanded.
 TEST_F(Drawings, DoNotGrowWhenTheyAreRead) {
   std::string text = "<!DOCTYPE svg [<!ENTITY a0 \"1 1 \">";
   for (int k = 1; k < 30; ++k)

@@ -1,6 +1,7 @@
-// Designs for other programs, read back by readers written here: polylines and circles enclose the
-// area of the curves, the extruded surface is closed and encloses area times thickness; components
-// survive the way through their file bit for bit, and bad files are refused with their place.
+// Shows that exported designs are right when they are read back by readers written here: polylines
+// and circles enclose the area of the curves, the extruded surface is closed and encloses area
+// times thickness, components are read back bit for bit, and invalid files are refused with the
+// location of the error.
 #include "io/drawings/exports.h"
 
 #include <gtest/gtest.h>
@@ -31,10 +32,11 @@
 namespace flexmorph::io {
 namespace {
 
-constexpr double kTolerance = 2e-5;  // of curves; polygons have half of it
+constexpr double kTolerance = 2e-5;  // tolerance of curves; polygons have half of it
 constexpr double kBore = 0.004;
 
-/// Crossing bars in a frame, clipped, with an eye and two bores: several holes, curved sides.
+/// Returns crossing bars in a frame, clipped, with an eye and two bores: several holes, curved
+/// sides.
 std::vector<Region> design() {
   std::vector<std::vector<Vec2>> outlines;
   for (const Component& c : crossing_layout(0, 0, 0.6, 0.1, 6, 1, 0.008, 0.07))
@@ -61,7 +63,8 @@ double perimeter(std::span<const CurvedRegion> regions) {
   return out;
 }
 
-/// Area within vertices and bulges: a circular segment on every side that has one.
+/// Returns the area within vertices and bulges: a circular segment is added on every side with a
+/// bulge.
 double ring_area(const std::vector<Vec2>& ring, const std::vector<double>& bulges) {
   double twice = 0;
   for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -80,7 +83,7 @@ TEST(Dxf, ClosedPolylinesAndCirclesEncloseTheArea) {
   const std::vector<CurvedRegion> curves = curved_design();
   write_dxf(scratch / "design.dxf", curves, kMetre);
   std::istringstream in(contents_of(scratch / "design.dxf"));
-  // Pairs of lines: group code, value.
+  // A DXF file consists of pairs of lines: group code and value.
   std::map<std::string, double> area_of_layer;
   std::vector<Vec2> ring;
   std::vector<double> bulges, radii;
@@ -118,7 +121,7 @@ TEST(Dxf, ClosedPolylinesAndCirclesEncloseTheArea) {
   EXPECT_NEAR(enclosed, area(design()), kTolerance * perimeter(curves));
 }
 
-// Rings of the path by the even-odd rule: outer ones run against holes, so that signed areas add
+// By the even-odd rule, outer rings and holes have opposite directions, so that signed areas add
 // up.
 TEST(Svg, PathEnclosesTheArea) {
   const std::vector<Region> regions = design();
@@ -173,13 +176,13 @@ TEST(Stl, IsWatertightAndHasTheVolume) {
   }
   ASSERT_GT(edges.size(), 100u);
   for (const auto& [edge, count] : edges) {
-    EXPECT_EQ(count, 1);  // once in each direction: twice in all, and facets turn the same way
+    EXPECT_EQ(count, 1);  // once in each direction, so that facets have one orientation
     EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
   }
   EXPECT_NEAR(volume, area(regions) * thickness, 1e-9 * volume);
 }
 
-// The unit is in the file, and the numbers are in it.
+// The unit is stated in the file, and the numbers are in this unit.
 TEST(Units, OfDxfAndStlAreSaid) {
   const Scratch scratch;
   const std::vector<Region> plate = {{corners_of({{0, 0}, {0.254, 0.0508}}), {}}};
@@ -201,7 +204,7 @@ TEST(Units, OfDxfAndStlAreSaid) {
   }
 }
 
-// Its own drawing is a domain again, to the tolerance that drawings are read with.
+// A written drawing can be read as a domain, within the tolerance of reading.
 TEST(Dxf, IsADomainAgain) {
   const Scratch scratch;
   const std::vector<CurvedRegion> all = curved_design();
@@ -214,12 +217,12 @@ TEST(Dxf, IsADomainAgain) {
     write_dxf(scratch / "design.dxf", {&largest, 1}, unit, more);
     const Region back = region_of(read_drawing(scratch / "design.dxf", {{}, {"OUTLINE", "HOLES"}}));
     EXPECT_EQ(back.holes.size(), largest.holes.size());
-    // The reader's sides are off arcs by a part of the drawing's size.
+    // The distance of the reader's sides from arcs is a fraction of the size of the drawing.
     const double near = kDrawingTolerance * 0.6;
     EXPECT_NEAR(area(back), area(largest), near * perimeter({&largest, 1})) << unit.name;
     const Box box = bounds_of(polygon_within(largest.outer, 0.1 * near));
     EXPECT_NEAR((bounds_of(back.outer).upper - box.upper).norm(), 0, 1.5 * near);
-    // Its curves are those that were written: the bores are circles again.
+    // The curves of the domain equal those that were written: the bores are circles again.
     const CurvedRegion again = curves_of({&back, 1}, 2 * near)[0];
     const auto bores = std::count_if(again.holes.begin(), again.holes.end(), [](const auto& ring) {
       return ring.size() == 1 && std::abs(ring[0].radius - kBore) < 1e-9;
@@ -228,7 +231,7 @@ TEST(Dxf, IsADomainAgain) {
   }
 }
 
-/// A STEP file as OpenCASCADE reads it, in millimetres.
+/// Returns a STEP file as OpenCASCADE reads it, in millimetres.
 TopoDS_Shape step_shape(const std::string& path) {
   STEPControl_Reader reader;
   EXPECT_EQ(reader.ReadFile(path.c_str()), IFSelect_RetDone);
@@ -241,7 +244,7 @@ int count(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
   return n;
 }
 
-/// Radii of the cylindrical faces of a shape [mm].
+/// Returns the radii of the cylindrical faces of a shape [mm].
 std::vector<double> cylinders_of(const TopoDS_Shape& shape) {
   std::vector<double> out;
   for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) {
@@ -283,7 +286,7 @@ TEST(Step, IsASolidOfTheVolumeWithCylindersAtItsArcs) {
   EXPECT_NEAR(found, area(polygons), kTolerance * perimeter(regions));
 }
 
-// The same design is the same file; the numbers in it are millimetres.
+// Equal designs give equal files; their numbers are millimetres.
 TEST(Step, IsRepeatableAndInMillimetres) {
   const Scratch scratch;
   const Region corners{corners_of({{0, 0}, {0.254, 0.0508}}), {}};
@@ -295,7 +298,7 @@ TEST(Step, IsRepeatableAndInMillimetres) {
   EXPECT_TRUE(contains(text, "CARTESIAN_POINT('',(254.,50.8,0.))"));
   EXPECT_TRUE(contains(text, "SI_UNIT(.MILLI.,.METRE.)"));
   EXPECT_TRUE(text.ends_with("END-ISO-10303-21;\n"));
-  write_step(scratch / "none.step", {}, 0.01);  // nothing was left of a design
+  write_step(scratch / "none.step", {}, 0.01);  // an empty design
   EXPECT_TRUE(contains(contents_of(scratch / "none.step"), "END-ISO-10303-21;"));
 }
 
@@ -309,7 +312,7 @@ TEST(ComponentsCsv, ReadsBackBitForBit) {
   for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(back[k].parameters(), all[k].parameters());
 }
 
-TEST(ComponentsCsv, RefusesBadFilesWithTheirPlace) {
+TEST(ComponentsCsv, RefusesBadFilesWithTheirLocation) {
   const Scratch scratch;
   const std::string header = "X0,Y0,half_length,angle,c1,c2,c3\n";
   const auto complaint = [&](const std::string& text) -> std::string {

@@ -1,5 +1,5 @@
-// Formulas of time: values against functions written in C++, derivatives against differences and
-// against derivatives by hand, everything that is not a formula refused with its place.
+// Shows that formulas of time have the values of functions written in C++ and the derivatives of
+// differences and of derivatives by hand, and that invalid text is refused with its position.
 #include "io/case_files/formula.h"
 
 #include <gtest/gtest.h>
@@ -30,8 +30,8 @@ std::string complaint(const std::string& text, const Constants& constants = {}) 
   return "";
 }
 
-/// Path of a platform and the length of a bar that leads it, Sun et al. (2018), (36), (37): the bar
-/// from (x0, 0) to a point at x_c from the platform's middle.
+/// Returns the length of a bar that guides a platform, Sun et al. (2018), (36), (37): the bar is
+/// from (x0, 0) to a point at x_c from the middle of the platform.
 std::string bar_length(const std::string& x0, const std::string& x_c) {
   const std::string theta = "(-2*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4)";
   const std::string x = "(0.5*cos(pi - " + theta + ") + " + x_c + " - " + x0 + ")";
@@ -98,15 +98,15 @@ class EveryFormula : public ::testing::TestWithParam<size_t> {
   const Formula formula{sample.text, {{"L", 0.45}, {"a_1", 0.2}}};
 };
 
-// Round-off of a value of order 1, a few operations.
+// The tolerance is round-off of a value of order 1 after a few operations.
 TEST_P(EveryFormula, HasTheValueOfTheSameFunction) {
   for (const double t : {0.05, 0.31, 0.5, 0.77, 1.0})
     EXPECT_NEAR(formula(t).value, sample.same(t), 2e-14 * (1 + std::abs(sample.same(t))))
         << sample.text << " at " << t;
 }
 
-// Differences of fourth order with h = 1e-3: error h^4 f^(5) / 30, at most 1e-8 for functions whose
-// fifth derivative is below 3e5 (the path of the platform: (2 pi)^5 times a few).
+// Differences of fourth order with h = 1e-3 have the error h^4 f^(5) / 30, at most 1e-8 for
+// functions whose fifth derivative is below 3e5 (the path of the platform: (2 pi)^5 times a few).
 TEST_P(EveryFormula, HasTheDerivativesOfItsDifferences) {
   const double h = 1e-3;
   const auto slope = [&](double t, double Jet::*entry) {
@@ -122,7 +122,8 @@ TEST_P(EveryFormula, HasTheDerivativesOfItsDifferences) {
 }
 INSTANTIATE_TEST_SUITE_P(Table, EveryFormula, ::testing::Range<size_t>(0, samples().size()));
 
-// The start of the platform's path: theta'' (0) = 6 pi moves it at 0.5 * 6 pi (P (36)).
+// At the start of the platform's path, theta''(0) = 6 pi gives the acceleration 0.5 * 6 pi (P
+// (36)).
 TEST(Formula, DerivativesOfThePlatformByHand) {
   const Formula y("0.5*sin(pi - (-2*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4)) + 0.4");
   const Jet start = y(0);
@@ -136,11 +137,10 @@ TEST(Formula, LongestBarOfThePlatform) {
   for (const Formula& length :
        {Formula(bar_length("(-0.4)", "(-0.15)")), Formula(bar_length("0.4", "0.15"))})
     for (int i = 0; i <= 1000; ++i) longest = std::max(longest, length(1e-3 * i).value);
-  EXPECT_NEAR(longest, 0.8717, 5e-5);  // as the platform is built
+  EXPECT_NEAR(longest, 0.8717, 5e-5);  // length of the built platform
 }
 
-// f, f' and f" by hand, of all functions and of operations whose derivatives have rules of their
-// own.
+// f, f' and f" by hand, for all functions and for operations whose derivatives have special rules.
 TEST(Formula, DerivativesAreThoseOfTables) {
   struct Row {
     std::string text;
@@ -237,7 +237,7 @@ TEST(Formula, DerivativesAreThoseOfTables) {
     const Formula f(text);
     for (const double t : {0.1, 0.4, 0.9}) {
       const Jet x = f(t), y = by_hand(t);
-      // A few operations; log(t) is small near 1.
+      // The tolerance is round-off of a few operations; log(t) is small near 1.
       EXPECT_NEAR(x.value, y.value, 1e-14 * (1 + std::abs(y.value))) << text << " at " << t;
       EXPECT_NEAR(x.rate, y.rate, 1e-14 * (1 + std::abs(y.rate))) << text << " at " << t;
       EXPECT_NEAR(x.acceleration, y.acceleration, 1e-14 * (1 + std::abs(y.acceleration)))
@@ -246,7 +246,7 @@ TEST(Formula, DerivativesAreThoseOfTables) {
   }
 }
 
-// Taylor: |f(t + h) - f - h f' - h² f"/2| falls as h³ over two decades.
+// Taylor test: |f(t + h) - f - h f' - h² f"/2| decreases as h³ over two decades.
 TEST_P(EveryFormula, HasATaylorSeries) {
   const double t = 0.77;
   const Jet x = formula(t);
@@ -271,7 +271,7 @@ TEST(Formula, SignsBelongToTheNextOperand) {
     EXPECT_NEAR(Formula(text)(t).value, value, 1e-15 * (1 + std::abs(value))) << text;
 }
 
-// Where each factor alone has no derivative, and their product has one.
+// A factor may have no derivative where the product has one.
 TEST(Formula, PowersOfOneBaseAreOnePower) {
   for (const char* text : {"sqrt(t)*t^2", "sqrt(t)*cos(t)*t^2", "t^2*(cos(t)*sqrt(t))",
                            "t^3*sqrt(t)/t*cos(t)", "(t^0.5)^5*cos(t)"}) {
@@ -285,7 +285,7 @@ TEST(Formula, PowersOfOneBaseAreOnePower) {
   EXPECT_EQ(Formula("a*log(t)", {{"a", 0}})(0).value, 0);
 }
 
-// A formula of a formula: derivatives by the chain rule from those of the inner one.
+// The derivatives of a formula of a formula follow from the inner derivatives by the chain rule.
 TEST(Formula, CompositionsKeepTheirDerivatives) {
   const std::string inner = bar_length("0.4", "0.15");
   const Formula f(inner), g("sin(3*(" + inner + "))/(1 + (" + inner + ")^2)");
@@ -296,14 +296,16 @@ TEST(Formula, CompositionsKeepTheirDerivatives) {
     EXPECT_NEAR(z.rate, y.rate * x.rate, 1e-13);
     EXPECT_NEAR(z.acceleration, y.acceleration * x.rate * x.rate + y.rate * x.acceleration, 1e-11);
   }
-  // What the three share is computed once: far fewer operations than the parts have together.
+  // Common parts are computed once: far fewer operations than all parts together.
   EXPECT_LT(g.n_operations(), f.n_operations() + 3 * outer.n_operations());
 }
 
 TEST(Formula, IsReadInAnyLocale) {
   const CommaLocale comma;
   EXPECT_EQ(Formula("1234.5*t")(2).value, 2469);
-  EXPECT_EQ(complaint("t + 1,5"), "formula 't + 1,5': character 6: expected EOF, got: \",\"");
+  EXPECT_EQ(complaint("t + 1,5"),
+            "formula 't + 1,5': character 6: the formula must end here or continue with an "
+            "operator, but \",\" follows");
 }
 
 TEST(Formula, SaysWhatIsWrongAndWhere) {
@@ -314,27 +316,29 @@ TEST(Formula, SaysWhatIsWrongAndWhere) {
       {"2*zeta(t)", "character 3: there is no function 'zeta'"},
       {"1 + I*t", "character 5: 'I' is unknown"},
       {"Pi*t", "character 1: 'Pi' is unknown"},
-      {"sin*t", "character 1: the function 'sin' has its argument in parentheses"},
-      {"2*sqrt( )", "character 7: nothing is in these parentheses"},
-      {"sin(t, t)", "no function \"sin\" with 2 arguments"},
-      {"sin(t", "character 6: expected ')'"},
-      {"t + ", "character 5: unexpected token, got: EOF"},
-      {"2t", "character 2: expected EOF, got: \"t\""},
-      {"1 + t)", "character 6: expected EOF, got: \")\""},
-      {"10^2 + t**2", "character 10: unexpected token, got: \"*\""},
+      {"sin*t", "character 1: the function 'sin' needs its argument in parentheses"},
+      {"2*sqrt( )", "character 7: these parentheses are empty"},
+      {"sin(t, t)", "the function 'sin' cannot have 2 arguments"},
+      {"sin(t", "character 6: ')' is needed"},
+      {"t + ",
+       "character 5: a number, a name or '(' is needed here, but the end of the formula follows"},
+      {"2t", "character 2: the formula must end here"},
+      {"1 + t)", "character 6: the formula must end here"},
+      {"10^2 + t**2", "character 10: a number, a name or '(' is needed here, but \"*\" follows"},
       {"t^2^3", "character 4: a^b^c needs parentheses"},
       {"t^-2^3", "character 5: a^b^c needs parentheses"},
       {"t^1e-3^2", "character 7: a^b^c needs parentheses"},
       {"2*(1 + t^sin(t^2)^2)", "character 18: a^b^c needs parentheses"},
-      {"{t, 1}", "character 1: a formula has no '{'"},
-      {"2·t", "character 2: a formula has no letters beyond a to z"},
-      {"t < 1", "character 3: a formula has no '<'"},
-      {"1.2.3*t", "character 1: '1.2.3' is no number"},
-      {"1e999*t", "character 1: '1e999' is no number"},
+      {"{t, 1}", "character 1: the character '{' is not allowed"},
+      {"2·t", "character 2: a formula contains no letters other than a to z"},
+      {"t < 1", "character 3: the character '<' is not allowed"},
+      {"1.2.3*t", "character 1: '1.2.3' is not a number"},
+      {"1e999*t", "character 1: '1e999' is not a number"},
       {"1/0", "division by zero"},
-      {"0^t", "division by zero, or a power of 0 whose exponent is not positive at all times"},
-      {"log(-1)", "no real number"},
-      {"sqrt(t - 0.5)", "its value at t = 0 s is no real number"},
+      {"0^t",
+       "it contains a division by zero, or a power of 0 whose exponent is not always positive"},
+      {"log(-1)", "not a real number"},
+      {"sqrt(t - 0.5)", "its value at t = 0 s is not a real number"},
       {"1/(t - 0.5)", "its value at t = 0.5 s is infinite"},
       {"t^1.5", "its acceleration at t = 0 s is infinite"},
       {"exp(1000*t)", "is infinite"},
@@ -347,19 +351,19 @@ TEST(Formula, SaysWhatIsWrongAndWhere) {
       {std::string(20'000, ' ') + "t", "at most 10000 characters"},
   };
   for (const auto& [text, words] : wrong) EXPECT_TRUE(contains(complaint(text), words)) << text;
-  // Fast, but smooth.
+  // Fast, but smooth functions are accepted.
   for (const char* text : {"sqrt(t)*t^2", "sin(2000*t)", "tanh(1e4*(t - 1/3))",
                            "exp(-1e6*(t - 1/3)^2)", "1e-30*sin(t)", "1e8 + t^3", "abs(t - 1/3)^3",
                            "abs(t - 1/3)", "abs(t - 0.25)", "step(t - 1/3)"})
     EXPECT_EQ(complaint(text), "");
 }
 
-// What would fill the stack, and powers that no double holds.
+// Formulas that would exhaust the stack, and powers beyond the range of doubles, are refused.
 TEST(Formula, RefusesWhatHasNoEnd) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
-      {std::string(8000, '-') + "t", "character 11: more than 10 signs in a row"},
+      {std::string(8000, '-') + "t", "character 11: there are more than 10 signs in a row"},
       {"t - + - + - + - + - + - + 1", "more than 10 signs in a row"},
-      {"((3)^(999999))^(999999)", "character 5: a number in it is too large"},
+      {"((3)^(999999))^(999999)", "character 5: it contains a number that is too large"},
       {"((2*t)^(1000))^(1000)", "its value at t = 0.501 s is infinite"},
       {"(2*t + 2)^(999999)", "its value at t = 0 s is infinite"},
       {"(t^2)^(999*999999)", "character 6: an exponent is at most 1e6"}};
@@ -369,8 +373,8 @@ TEST(Formula, RefusesWhatHasNoEnd) {
   EXPECT_EQ(Formula("((3)^(4))^(5)*t")(1).value, std::pow(3.0, 20));
 }
 
-// A path that sets off from rest: in 1e-5 s it moves by less than the last digit of where it is,
-// and its rate is round-off. A corner in as short a time is still one.
+// A path starts from rest: in 1e-5 s it moves by less than the last digit of its position, and its
+// computed rate is round-off. A corner in such a short time must still be found.
 TEST(Formula, IsCheckedOverShortTimes) {
   const Formula path("0.5*cos(pi - (-2*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4))");
   for (const double end : {1e-9, 1e-7, 1e-5, 1e-3, 1.0}) EXPECT_NO_THROW(path.check(end)) << end;
@@ -383,9 +387,11 @@ TEST(Formula, ConstantsHaveNamesOfTheirOwn) {
     EXPECT_NE(Formula::refusal_of_name(name), "") << name;
   for (const char* name : {"a", "L1", "long_name", "e", "T"})
     EXPECT_EQ(Formula::refusal_of_name(name), "") << name;
-  EXPECT_TRUE(contains(complaint("t", {{"sin", 1}}), "constant 'sin': this is a function"));
-  EXPECT_TRUE(contains(complaint("t", {{"a", std::nan("")}}), "constant 'a': not a finite number"));
-  EXPECT_EQ(Formula("e*t", {{"e", 0.1}})(1).value, 0.1);  // the very double
+  EXPECT_TRUE(contains(complaint("t", {{"sin", 1}}),
+                       "constant 'sin': this name is reserved for a function"));
+  EXPECT_TRUE(contains(complaint("t", {{"a", std::nan("")}}),
+                       "constant 'a': its value is not a finite number"));
+  EXPECT_EQ(Formula("e*t", {{"e", 0.1}})(1).value, 0.1);  // exactly this double
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Keys are declared once: readers, messages and the explained case are made from the declaration.
+// Shows that keys are declared once: readers, messages and the explained case are made from the
+// declaration.
 #include "io/case_files/key.h"
 
 #include <gtest/gtest.h>
@@ -13,30 +14,36 @@ namespace {
 
 enum class Mood { calm, wild };
 
-const Key& kTitle = key("", "title").text("a title").otherwise("none").says("What it is.");
-const Key& kTime = key("", "time").table().says("When.");
-const Key& kEnd = key("time", "end").number(positive("an end", "s")).says("The last moment.");
+const Key& kTitle = key("", "title").text("a title").otherwise("none").description("What it is.");
+const Key& kTime = key("", "time").table().description("When.");
+const Key& kEnd =
+    key("time", "end").number(positive("an end", "s")).description("The last moment.");
 const Key& kStep = key("time", "step")
                        .number(positive("a step", "s"))
                        .otherwise(0.25)
-                       .says("From one to the next.");
+                       .description("From one to the next.");
 const Key& kSpin = key("time", "spin")
                        .number(positive("a spin", "s"))
                        .otherwise_as("a tenth of `end`")
-                       .says("It.");
-const Choice<Mood> kMood(key("time", "mood").otherwise("calm").says("How."), "a mood",
+                       .description("It.");
+const Choice<Mood> kMood(key("time", "mood").otherwise("calm").description("How."), "a mood",
                          {{"calm", Mood::calm}, {"wild", Mood::wild}});
-const Key& kBody = key("", "body").tables_of().says("Things.");
+const Key& kBody = key("", "body").tables_of().description("Things.");
 const Key& kSize = shared_key({"body", "time"}, "size")
                        .integers("a size", 1, 9, 2, 2)
                        .otherwise(std::vector<int>{1, 2})
-                       .says("Along and across.");
-const Key& kAngle =
-    key("body", "angle").number(any_number("an angle")).name_of("a drive").says("Or a drive.");
-const Key& kOutput = key("", "output").table().otherwise_as("all defaults").says("What is kept.");
-const Key& kEvery = key("output", "every").integer("a count", 0, 9).otherwise(3).says("How often.");
-const Key& kConstants = key("", "constants").table().otherwise_as("none").says("Numbers.");
-const Key& kConstant = key("constants", "*").number(any_number("a constant")).says("Any name.");
+                       .description("Along and across.");
+const Key& kAngle = key("body", "angle")
+                        .number(any_number("an angle"))
+                        .name_of("a drive")
+                        .description("Or a drive.");
+const Key& kOutput =
+    key("", "output").table().otherwise_as("all defaults").description("What is kept.");
+const Key& kEvery =
+    key("output", "every").integer("a count", 0, 9).otherwise(3).description("How often.");
+const Key& kConstants = key("", "constants").table().otherwise_as("none").description("Numbers.");
+const Key& kConstant =
+    key("constants", "*").number(any_number("a constant")).description("Any name.");
 
 constexpr const char* kText = R"(# a comment
 [time]
@@ -58,7 +65,7 @@ class Keys : public ::testing::Test {
   CaseFile file(const std::vector<std::string>& changes = {}, const std::string& text = kText) {
     return CaseFile(scratch_.write("case.toml", text), changes);
   }
-  /// Reads everything, as a reader of cases would.
+  /// Reads all values like a reader of cases.
   static void read(const Table& root) {
     root.string(kTitle);
     const Table time = root.table(kTime);
@@ -122,8 +129,9 @@ TEST_F(Keys, MessagesAreThoseOfTheDeclaration) {
 
 TEST_F(Keys, AKeyIsReadWhereAndAsWhatItIsDeclared) {
   const CaseFile read = file();
-  EXPECT_THROW(read.root().number(kEnd), std::logic_error);                // of [time]
-  EXPECT_THROW(read.root().table(kTime).integer(kEnd), std::logic_error);  // a number
+  // the key belongs to [time]
+  EXPECT_THROW(read.root().number(kEnd), std::logic_error);
+  EXPECT_THROW(read.root().table(kTime).integer(kEnd), std::logic_error);  // the key is a number
   EXPECT_THROW(read.root().table(kTime).numbers(kEnd), std::logic_error);
 }
 
@@ -141,7 +149,7 @@ TEST_F(Keys, TheBookKnowsThem) {
   EXPECT_TRUE(kEnd.is_needed());
   EXPECT_FALSE(kSpin.is_needed());
   EXPECT_FALSE(kStep.is_needed());
-  EXPECT_NE(std::string(kEnd.place.file_name()).find("key_test.cpp"), std::string::npos);
+  EXPECT_NE(std::string(kEnd.location.file_name()).find("key_test.cpp"), std::string::npos);
 }
 
 TEST_F(Keys, TheExplainedCaseHasAllValuesAndReadsBack) {
@@ -157,10 +165,10 @@ TEST_F(Keys, TheExplainedCaseHasAllValuesAndReadsBack) {
   read(again.root());
   again.finish();
   EXPECT_EQ(again.explained(), text);
-  // A value that only the whole case decides.
-  again.root().table(kTime).settle(kStep, 0.125);
+  // A value may depend on the whole case.
+  again.root().table(kTime).record(kStep, 0.125);
   EXPECT_EQ(again.explained(), text) << "it is in the file by now";
-  first.root().table(kTime).settle(kStep, 0.125);
+  first.root().table(kTime).record(kStep, 0.125);
   EXPECT_TRUE(contains(first.explained(), "step = 0.125 "));
 }
 

@@ -1,4 +1,4 @@
-// Long formulas: their derivatives, and how many operations they take.
+// Shows that long formulas have the right derivatives and a limited number of operations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace flexmorph::io {
 namespace {
 
-// Each function, added to a long product, has the derivatives that it has alone.
+// Each function, added to a long product, must have the derivatives of the function alone.
 TEST(Formula, LongFormulasHaveTheSameDerivatives) {
   std::string product = "cos(t)";
   for (int i = 1; i < 40; ++i) product += "*cos(t + 0.0" + std::to_string(i) + ")";
@@ -36,8 +36,8 @@ TEST(Formula, LongFormulasHaveTheSameDerivatives) {
   }
 }
 
-// P = Π (1 + t/k): P'/P = Σ 1/(t + k) = s, P"/P = s² - Σ 1/(t + k)². Operations grow with the
-// factors, not with their third power.
+// For P = Π (1 + t/k): P'/P = Σ 1/(t + k) = s, P"/P = s² - Σ 1/(t + k)². The number of operations
+// must be proportional to the number of factors, not to its third power.
 TEST(Formula, LongProductsHaveTheirDerivatives) {
   std::string text = "1";
   for (int k = 100; k < 400; ++k) text += "*(1 + t/" + std::to_string(k) + ".0)";

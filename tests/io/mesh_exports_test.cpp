@@ -1,4 +1,4 @@
-// Meshes for other programs, read back by readers written here.
+// Shows that meshes for other programs are right when they are read back by readers written here.
 #include "io/drawings/mesh_exports.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ PartMesh mesh_of_frame() {
   return mesher.mesh();
 }
 
-/// An input file: lines under each keyword line, in its order.
+/// Returns the lines of an input file under each keyword line, in their order.
 std::vector<std::pair<std::string, std::vector<std::vector<double>>>> cards(
     const std::string& text) {
   std::vector<std::pair<std::string, std::vector<std::vector<double>>>> out;
@@ -83,7 +83,7 @@ TEST(Inp, HoldsMeshSupportsAndForces) {
   }
   EXPECT_EQ(steps, 2);
   EXPECT_NEAR(area, mesh.area(), 1e-10);
-  // A slice with its part of the forces.
+  // The model is a slice with a proportional fraction of the forces.
   EXPECT_LT(thickness, 0.7);
   EXPECT_NEAR(pulled, 2 * thickness / 0.7 * static_cast<double>(load.forces.size()) / -3, 1e-10);
 }

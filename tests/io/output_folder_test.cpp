@@ -1,5 +1,5 @@
-// A folder that is filled: nobody else fills it meanwhile, nothing of the user's is touched, and
-// what was in it before is moved, not removed.
+// Shows that an output folder is filled by one process at a time, that no files of the user are
+// changed, and that previous contents are moved and not removed.
 #include "io/output_folder.h"
 
 #include <fcntl.h>
@@ -39,7 +39,7 @@ TEST(OutputFolder, KeepsAListOfItsFiles) {
     EXPECT_EQ(folder.path(), scratch / "run");
     EXPECT_EQ(folder.moved_to(), "");
     std::ofstream(folder.file("design/frame_00001.vti")) << "frame";
-    folder.file("design/frame_00001.vti");  // twice is once
+    folder.file("design/frame_00001.vti");  // a file is listed once
     folder.file("history.csv");
   }
   const std::string list = contents_of(scratch / "run/.flexmorph");
@@ -70,27 +70,27 @@ TEST(OutputFolder, RemovesNoRun) {
   EXPECT_EQ(contents_of(scratch / "run.previous.3/run.json"), "third");
 }
 
-// A file run.json makes no run of a folder, and an empty one is free.
+// A folder with a file run.json is not a run; an empty folder may be used.
 TEST(OutputFolder, LeavesForeignFoldersAlone) {
   const Scratch scratch;
   fs::create_directories(scratch / "foreign");
   scratch.write("foreign/run.json", "{}");
-  EXPECT_NE(refusal_of(scratch / "foreign").find("no run has filled it"), std::string::npos);
+  EXPECT_NE(refusal_of(scratch / "foreign").find("it does not contain a run"), std::string::npos);
   EXPECT_EQ(contents_of(scratch / "foreign/run.json"), "{}");
   EXPECT_FALSE(fs::exists(scratch / "foreign/.flexmorph"));
   fs::create_directories(scratch / "empty");
   EXPECT_EQ(refusal_of(scratch / "empty"), "");
-  // Nor does a link to a list elsewhere.
+  // A link to a list elsewhere does not make a folder a run.
   fill(scratch / "run", "");
   fs::create_directories(scratch / "linked");
   fs::create_symlink(scratch / "run/.flexmorph", scratch / "linked/.flexmorph");
-  EXPECT_NE(refusal_of(scratch / "linked").find("no run has filled it"), std::string::npos);
+  EXPECT_NE(refusal_of(scratch / "linked").find("it does not contain a run"), std::string::npos);
   scratch.write("file", "");
   EXPECT_NE(refusal_of(scratch / "file"), "");
   EXPECT_EQ(contents_of(scratch / "file"), "");
 }
 
-/// A process that fills a folder until it is killed, which the destructor does.
+/// A process that fills a folder until it is killed by the destructor.
 class Filler {
  public:
   explicit Filler(const std::string& folder) {
@@ -98,7 +98,7 @@ class Filler {
     if (pipe(ready) != 0) return;
     pid_ = fork();
     if (pid_ == 0) fill_and_wait(folder, ready[1]);
-    close(ready[1]);  // so that read() ends when the child does
+    close(ready[1]);  // so that read() ends when the child ends
     char byte = 0;
     begun_ = read(ready[0], &byte, 1) == 1;
     close(ready[0]);
@@ -117,7 +117,7 @@ class Filler {
   }
 
  private:
-  /// In the child, which ends without GoogleTest, at the latest after a minute.
+  /// Runs in the child, which ends without GoogleTest, at the latest after a minute.
   [[noreturn]] static void fill_and_wait(const std::string& path, int ready) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     alarm(60);
@@ -137,7 +137,7 @@ class Filler {
   bool begun_ = false;
 };
 
-// A process that is killed leaves no lock.
+// A killed process leaves no lock.
 TEST(OutputFolder, IsFilledByOneProcess) {
   const Scratch scratch;
   Filler filler(scratch / "run");
@@ -154,7 +154,7 @@ TEST(OutputFolder, IsFilledByOneProcess) {
   EXPECT_EQ(contents_of(scratch / "run.previous/run.json"), "running");
 }
 
-// A study goes on with what is in its folder, alone.
+// A study continues with the contents of its folder, but only one process at a time.
 TEST(FolderLock, LeavesWhatIsThere) {
   const Scratch scratch;
   fs::create_directories(scratch / "study");
@@ -169,7 +169,7 @@ TEST(FolderLock, LeavesWhatIsThere) {
   EXPECT_EQ(contents_of(scratch / "study/compare.csv"), "rows");
 }
 
-// A user's own compare.csv is no study's to write over, nor are the files of a run.
+// A study must not overwrite a compare.csv of the user, nor the files of a run.
 TEST(FolderLock, LeavesFoldersThatNoStudyHasFilled) {
   const Scratch scratch;
   fs::create_directories(scratch / "mine");
@@ -181,7 +181,8 @@ TEST(FolderLock, LeavesFoldersThatNoStudyHasFilled) {
   EXPECT_THROW(FolderLock(scratch / "run"), Error);
   EXPECT_EQ(contents_of(scratch / "run/.flexmorph"), list);
 
-  fs::create_directories(scratch / "several");  // at work in it before there is a whole study
+  // fractions of a study may run in it before there is a whole study
+  fs::create_directories(scratch / "several");
   require_study_folder(scratch / "several");
   require_study_folder(scratch / "several");
   const FolderLock lock(scratch / "several");

@@ -1,4 +1,4 @@
-// Pictures of parts: pixels where the part is, in the colours of what it does there.
+// Shows that pictures of parts have pixels where the part is, in the colours of the values there.
 #include "io/part_picture.h"
 
 #include <gtest/gtest.h>
@@ -17,18 +17,18 @@
 namespace flexmorph::io {
 namespace {
 
-/// The rectangle (0, 0) to (2, 1) in two triangles; middles of sides are nodes 4 to 8.
+/// Returns the rectangle (0, 0) to (2, 1) in two triangles; middles of sides are nodes 4 to 8.
 PartMesh rectangle() {
   PartMesh out;
   out.points = {{0, 0}, {2, 0}, {2, 1}, {0, 1}, {1, 0}, {1, 0.5}, {0, 0.5}, {2, 0.5}, {1, 1}};
   out.n_corners = 4;
   out.triangles = {{0, 1, 3, 4, 5, 6}, {1, 2, 3, 7, 8, 5}};
   out.piece = {0, 0};
-  out.n_pieces = 1;
+  out.n_connected_regions = 1;
   return out;
 }
 
-/// The picture in an SVG.
+/// The picture inside an SVG file.
 class Decoded {
  public:
   explicit Decoded(const std::string& svg) {
@@ -47,7 +47,7 @@ class Decoded {
   }
   int width() const { return size_[0]; }
   int height() const { return size_[1]; }
-  /// At parts of the width and, from below, of the height.
+  /// Returns the colour at fractions of the width and, from below, of the height.
   std::array<int, 3> at(double x, double y) const {
     std::array<int, 3> out{};
     for (int c = 0; c < 3; ++c)
@@ -74,18 +74,18 @@ TEST(PartPicture, HasTheColoursOfItsValues) {
   PartPicture picture{.title = "a < b", .unit = "Pa", .values = values, .upper = 5};
   const std::string svg = part_svg(mesh, picture);
   EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
-  EXPECT_NE(svg.find(">5 Pa and more<"), std::string::npos);
+  EXPECT_NE(svg.find("5 Pa or more"), std::string::npos);
   const Decoded found(svg);
   EXPECT_EQ(found.width(), 2 * found.height());
   for (const Vec2& p : {Vec2(0.2, 0.3), Vec2(1.1, 0.8), Vec2(0.4, 0.9)})
     expect_color(found.at(p.x() / 2, p.y()), map_color((3 * p.x() + p.y()) / 5));
-  expect_color(found.at(0.97, 0.9), map_color(1));  // beyond the largest colour
+  expect_color(found.at(0.97, 0.9), map_color(1));  // above the largest colour
 }
 
-TEST(PartPicture, ShowsThePartDisplacedAboveItsPlace) {
+TEST(PartPicture, ShowsTheDisplacedPart) {
   const PartMesh mesh = rectangle();
   const std::vector<double> values(mesh.points.size(), 1);
-  std::vector<double> displacement;  // up by 0.1, ten times as far
+  std::vector<double> displacement;  // upwards by 0.1, magnified by 5
   for (size_t k = 0; k < mesh.points.size(); ++k) displacement.insert(displacement.end(), {0, 0.1});
   PartPicture picture{.title = "",
                       .unit = "Pa",
@@ -93,7 +93,7 @@ TEST(PartPicture, ShowsThePartDisplacedAboveItsPlace) {
                       .displacement = displacement,
                       .upper = 2,
                       .magnification = 5};
-  const Decoded found(part_svg(mesh, picture));  // 2 x 1.5
+  const Decoded found(part_svg(mesh, picture));  // the picture is 2 x 1.5
   expect_color(found.at(0.5, 0.9), map_color(0.5));
   expect_color(found.at(0.5, 0.5), map_color(0.5));
   expect_color(found.at(0.5, 0.1), {225, 225, 225});

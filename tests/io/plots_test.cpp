@@ -1,4 +1,5 @@
-// Plots and drawings: well-formed XML, points where the data are, gaps where there are none.
+// Shows that plots and drawings are well-formed XML with points where the data are and gaps where
+// there are none.
 #include "io/plots.h"
 
 #include <gtest/gtest.h>
@@ -17,13 +18,13 @@
 namespace flexmorph::io {
 namespace {
 
-/// Root of the parsed text, or null where it is not well formed.
+/// Returns the root of the parsed text, or null if it is not well formed.
 vtkSmartPointer<vtkXMLDataElement> parse(const std::string& text) {
   return vtkSmartPointer<vtkXMLDataElement>::Take(
       vtkXMLUtilities::ReadElementFromString(text.c_str()));
 }
 
-/// All `d` of paths, in the order of the file.
+/// Returns the attributes `d` of all paths, in the order of the file.
 std::vector<std::string> paths(const std::string& svg) {
   std::vector<std::string> found;
   for (size_t at = 0; (at = svg.find(" d=\"", at)) != std::string::npos;) {
@@ -63,7 +64,7 @@ TEST(Plot, NonFinitePointsLeaveGaps) {
   EXPECT_FALSE(contains(plot_svg(figure_of(panel)), "nan"));
 }
 
-// A power law is a straight line on logarithmic axes; values that have no logarithm are gaps.
+// A power law is a straight line on logarithmic axes; values without a logarithm are gaps.
 TEST(Plot, LogarithmicAxes) {
   Panel panel{.x = {"h", true}, .y = {"error", true}};
   panel.curves = {{.x = {1e-3, 1e-2, 1e-1, 1, 10}, .y = {1e-6, 1e-4, 1e-2, 0, -1}}};
@@ -76,11 +77,11 @@ TEST(Plot, LogarithmicAxes) {
   std::vector<double> p;
   for (double value; in >> value;) p.push_back(value);
   ASSERT_EQ(p.size(), 6u);
-  // Pixels are written to 0.01.
+  // Tolerance: pixels are written to 0.01.
   EXPECT_NEAR(p[2] - p[0], p[4] - p[2], 0.03);
   EXPECT_NEAR(p[3] - p[1], p[5] - p[3], 0.03);
   EXPECT_GT(p[2], p[0]);
-  EXPECT_LT(p[3], p[1]);  // y up
+  EXPECT_LT(p[3], p[1]);  // y points up
 }
 
 TEST(Plot, EmptyAndConstantDataStillMakeAPicture) {
@@ -117,18 +118,18 @@ TEST(Drawing, IsInMetresAndYUp) {
   ASSERT_NE(parse(svg), nullptr);
   EXPECT_TRUE(contains(svg, "width=\"600mm\" height=\"100mm\""));
   EXPECT_TRUE(contains(svg, "viewBox=\"0 -0.05 0.6 0.1\""));
-  EXPECT_TRUE(contains(svg, "matrix(1 0 0 -1 0 0)"));  // the middle stays where it is
+  EXPECT_TRUE(contains(svg, "matrix(1 0 0 -1 0 0)"));  // the middle stays at its position
   EXPECT_TRUE(contains(svg, "fill-rule=\"evenodd\""));
   EXPECT_EQ(paths(svg).at(0), "M0 -0.05L0.6 -0.05L0.6 0.05ZM0.4 0L0.4 0.01L0.5 0Z");
 }
 
-/// A horizontal unit square at the height z.
+/// Returns a horizontal unit square at the height z.
 SurfaceFrame square(double z, double value) {
   return {"square", {3, {0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z}, {{0, 1, 2, 3}}}, {value}};
 }
 
 TEST(Surfaces, WhatIsNearerIsDrawnLater) {
-  // Two squares in one frame, the upper one first: seen from above, it must come last.
+  // Two squares are in one frame, the upper one first: seen from above, it must be drawn last.
   SurfaceFrame both = square(0.5, 4);
   const SurfaceFrame lower = square(0, 0);
   both.mesh.points.insert(both.mesh.points.end(), lower.mesh.points.begin(),
@@ -137,7 +138,8 @@ TEST(Surfaces, WhatIsNearerIsDrawnLater) {
   both.values.push_back(0);
   const std::string svg = surfaces_svg("two", {both});
   ASSERT_NE(parse(svg), nullptr);
-  const size_t light = svg.find("#fff0aa"), dark = svg.find("#264696");  // largest value, zero
+  // colours of the largest value and of zero
+  const size_t light = svg.find("#fff0aa"), dark = svg.find("#264696");
   ASSERT_NE(light, std::string::npos);
   ASSERT_NE(dark, std::string::npos);
   EXPECT_LT(dark, light);
@@ -145,7 +147,7 @@ TEST(Surfaces, WhatIsNearerIsDrawnLater) {
   EXPECT_THROW(surfaces_svg("plane", {{"flat", {2, {0, 0, 1, 0, 1, 1, 0, 1}, {}}, {}}}), Error);
 }
 
-/// A sheared plate of 6 x 4 cells whose densities are whole eighths.
+/// Returns a sheared plate of 6 x 4 cells whose densities are multiples of 1/8.
 PlanePlate sheared_plate() {
   PlanePlate plate;
   plate.n_across = 4;
@@ -155,7 +157,7 @@ PlanePlate sheared_plate() {
   return plate;
 }
 
-/// Area of all rings of a path of straight lines.
+/// Returns the area of all rings of a path of straight lines.
 double area(std::string path) {
   double sum = 0;
   for (char& c : path)
@@ -175,7 +177,7 @@ double area(std::string path) {
   return sum;
 }
 
-// The runs of all levels, weighed by their greys, are the material of the plate.
+// The areas of all grey levels, weighted by their greys, must add up to the material of the plate.
 TEST(PlaneFrames, GreysKeepTheMaterial) {
   const PlanePlate plate = sheared_plate();
   double material = 0;
@@ -199,9 +201,9 @@ TEST(PlaneFrames, ShareOneViewAndOneScale) {
   for (Vec2& p : moved) p += Vec2(3, 1);
   const std::string svg =
       plane_frames_svg("two", {{"t = 0 s", {}, {unit}}, {"t = 1 s", {}, {moved}}});
-  const auto drawn = paths(svg);  // an outline and a bar each
+  const auto drawn = paths(svg);  // an outline and a scale bar for each frame
   ASSERT_EQ(drawn.size(), 4u);
-  // 4 m on 940 units: 235 a metre; y points down, and 2 m are the height.
+  // 4 m on 940 units are 235 per metre; y points down, and the height is 2 m.
   EXPECT_EQ(drawn[0], "M30 500L265 500L265 265L30 265Z");
   EXPECT_EQ(drawn[2], "M735 265L970 265L970 30L735 30Z");
   EXPECT_EQ(drawn[1], drawn[3]);
@@ -222,7 +224,7 @@ TEST(PlaneFrames, OfMeshesThatDoNotFitAreRefused) {
   EXPECT_THROW(plane_frames_svg("far", {{"", {plate}, {}}}), Error);
 }
 
-// Fewer digits are a shorter picture of the same design.
+// With fewer digits the picture of a design is shorter.
 TEST(Outline, HasFewerDigitsWhereAsked) {
   const double third = 1.0 / 3;
   const Region region{{{0, 0}, {third, 0}, {third, third}}, {}};

@@ -14,7 +14,7 @@ Scratch::Scratch() {
   static std::atomic<int> count = 0;  // a test may have several
   std::string name = "flexmorph_" + std::to_string(getpid()) + "_" + test->test_suite_name() + "_" +
                      test->name() + "_" + std::to_string(++count);
-  std::replace(name.begin(), name.end(), '/', '_');  // of tests with parameters
+  std::replace(name.begin(), name.end(), '/', '_');  // for tests with parameters
   folder_ = std::filesystem::temp_directory_path() / name;
   std::filesystem::create_directories(folder_);
 }

@@ -8,7 +8,7 @@
 
 namespace flexmorph {
 
-/// A folder of its own for one test, removed afterwards.
+/// A folder for one test, removed afterwards.
 class Scratch {
  public:
   Scratch();
@@ -18,21 +18,22 @@ class Scratch {
 
   /// Returns the path of a file in the folder.
   std::string operator/(const std::string& name) const;
-  /// Writes a file into the folder. @return its path
+  /// Writes a file into the folder.
+  /// @returns the path of the file
   std::string write(const std::string& name, const std::string& contents) const;
 
  private:
   std::filesystem::path folder_;
 };
 
-/// Returns what a file contains; empty where there is none.
+/// Returns the contents of a file; empty if the file does not exist.
 std::string contents_of(const std::string& path);
 
 ::testing::AssertionResult contains(const std::string& text, const std::string& part);
 ::testing::AssertionResult starts(const std::string& text, const std::string& start);
 ::testing::AssertionResult ends(const std::string& text, const std::string& end);
 
-/// While it lives, the program speaks with a decimal comma and points between thousands.
+/// Sets a locale with a decimal comma and points between thousands during its lifetime.
 class CommaLocale {
  public:
   CommaLocale();

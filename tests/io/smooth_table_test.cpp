@@ -1,5 +1,6 @@
-// Smooth tables: through all points, derivatives that belong together and do not jump, the order of
-// splines of degree 5, polynomials of degree 5 exactly.
+// Shows that smooth tables pass through all points, that their derivatives are consistent and
+// continuous, that they have the order of splines of degree 5, and that they reproduce polynomials
+// of degree 5 exactly.
 #include "io/smooth_table.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ struct Points {
   std::vector<double> t, x;
 };
 
-/// f at n + 1 times of [0, 2], moved by up to `uneven` of their distance.
+/// Returns f at n + 1 times in [0, 2], moved randomly by up to `uneven` times their distance.
 template <class F>
 Points sampled(int n, F f, double uneven = 0) {
   std::mt19937 engine(7);
@@ -61,7 +62,8 @@ TEST(SmoothTable, ReproducesPolynomials) {
   }
 }
 
-/// Largest errors of value, rate and acceleration of the table of the wave with distance h.
+/// Returns the largest errors of value, rate and acceleration of the table of the wave with
+/// distance h.
 std::array<double, 3> errors(double h) {
   const Points p = sampled(static_cast<int>(std::lround(2 / h)), wave);
   const SmoothTable table(p.t, p.x);
@@ -84,8 +86,8 @@ TEST(SmoothTable, ConvergesWithOrderSix) {
   }
 }
 
-// Rates are differences of values, accelerations differences of rates, and no derivative jumps
-// between the polynomials: a jump would be as large as the difference over a step is small.
+// Rates must equal differences of values, and accelerations differences of rates. No derivative may
+// jump between the polynomials, which would be visible because differences over a step are small.
 TEST(SmoothTable, DerivativesBelongTogether) {
   const Points p = sampled(24, wave, 0.3);
   const SmoothTable table(p.t, p.x);
@@ -99,7 +101,7 @@ TEST(SmoothTable, DerivativesBelongTogether) {
   }
 }
 
-// The same spline by Eigen's own B-splines and a dense solution.
+// The expected spline comes from Eigen's B-splines and a dense solution.
 TEST(SmoothTable, AgreesWithADenseSolution) {
   using Spline = Eigen::Spline<double, 1, 5>;
   const Points p = sampled(60, wave, 0.45);
@@ -127,7 +129,7 @@ TEST(SmoothTable, AgreesWithADenseSolution) {
   }
 }
 
-// Tables as long as measurements are: nothing grows on the way from one end to the other.
+// In tables as long as measurements, errors must not grow from one end to the other.
 TEST(SmoothTable, LongTablesGoThroughTheirPoints) {
   const auto f = [](double t) { return std::sin(3000 * t); };
   const Points p = sampled(100'000, f, 0.4);
@@ -155,23 +157,26 @@ TEST(SmoothTable, RefusesWhatIsNoTable) {
   };
   const double nan = std::nan("");
   EXPECT_TRUE(contains(complaint({0, 1, 2}, {0, 1, 2}), "at least 4 points, not 3"));
-  EXPECT_TRUE(contains(complaint({0, 1, 2, 3}, {0, 1, 2}), "as many times as values: 4 and 3"));
-  // Times so uneven that those in front are one number in parts of the whole, and values that
-  // leave no room for a derivative.
-  EXPECT_TRUE(contains(complaint({0, 1, 2, 3, 4, 5, 1e308}, {0, 1, 2, 3, 4, 5, 6}),
-                       "row 2 of the table: 1 s follows 0 s; between two rows lies at least"));
-  EXPECT_TRUE(contains(complaint({-1e308, 0, 1, 1e308}, {0, 1, 2, 3}), "span more than a number"));
+  EXPECT_TRUE(contains(complaint({0, 1, 2, 3}, {0, 1, 2}),
+                       "as many times as values, not 4 times and 3 values"));
+  // In the first table the distances are negligible relative to the whole; in the others no
+  // derivative is representable.
+  EXPECT_TRUE(contains(
+      complaint({0, 1, 2, 3, 4, 5, 1e308}, {0, 1, 2, 3, 4, 5, 6}),
+      "row 2 of the table: 1 s follows 0 s; the distance between two times must be at least"));
+  EXPECT_TRUE(contains(complaint({-1e308, 0, 1, 1e308}, {0, 1, 2, 3}),
+                       "span of the table is not a finite number"));
   EXPECT_TRUE(contains(complaint({0, 1, 2, 3}, {0, 1e308, -1e308, 1e308}), "no smooth function"));
-  // A last time far away: the spline took 4e27 where the table says 2.
+  // With a distant last time the spline would have values up to 4e27 between table values up to 2.
   EXPECT_TRUE(
       contains(complaint({0, 0.1, 0.2, 0.3, 0.4, 0.5, 9999999999}, {0, 0.2, 0.1, 0.7, 1, 1.5, 2}),
-               "its times are too uneven"));
+               "the distances between its times differ too much"));
   EXPECT_TRUE(
       contains(complaint({0, 1, 1, 3}, {0, 1, 2, 3}), "row 3 of the table: times increase"));
   EXPECT_TRUE(
       contains(complaint({0, 1, 2, 3}, {0, nan, 2, 3}), "row 2 of the table: time and value"));
-  EXPECT_TRUE(
-      contains(complaint({0, 1, 2, 3}, {0, 1, 2, 3}), "covers 0 to 3 s; asked for t = -0.1"));
+  EXPECT_TRUE(contains(complaint({0, 1, 2, 3}, {0, 1, 2, 3}),
+                       "covers 0 to 3 s, but its value at t = -0.1"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Outlines of plates in STEP files: what is written is read back, in the plane and in metres; what
-// is no plate is refused.
+// Shows that outlines of plates in STEP files are read as they were written, in the plane and in
+// metres, and that other shapes are refused.
 #include "io/drawings/step_reader.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr double kThickness = 0.004;
 
 class StepOutlines : public ::testing::Test {
  protected:
-  /// A file of a shape whose sizes are in millimetres.
+  /// Returns the path of a file of a shape whose sizes are in millimetres.
   std::string file_of(const TopoDS_Shape& shape) const {
     STEPControl_Writer writer;
     writer.Transfer(shape, STEPControl_AsIs);
@@ -60,7 +60,7 @@ TEST_F(StepOutlines, AreThoseThatWereWritten) {
   EXPECT_NEAR((box.upper - Vec2(0.08, 0.03)).norm(), 0, 1e-9);
 }
 
-// A disc of 20 mm radius has its circle as edge.
+// The edge of a disc of 20 mm radius is its circle.
 TEST_F(StepOutlines, HaveArcs) {
   const auto rings =
       read_step_outline(file_of(BRepPrimAPI_MakeCylinder(20, 4).Shape()), kThickness);
@@ -75,16 +75,16 @@ TEST_F(StepOutlines, OfOneFaceNeedNoThickness) {
   TopExp_Explorer faces(solid, TopAbs_FACE);
   std::vector<TopoDS_Shape> all;
   for (; faces.More(); faces.Next()) all.push_back(faces.Current());
-  ASSERT_EQ(all.size(), 6u);  // the last two are across z
+  ASSERT_EQ(all.size(), 6u);  // the last two are normal to z
   EXPECT_NEAR(area(region_of(read_step_outline(file_of(all[5]), kThickness))), 6e-4, 1e-12);
-  EXPECT_TRUE(contains(complaint(file_of(all[0])), "one face across z"));
+  EXPECT_TRUE(contains(complaint(file_of(all[0])), "one face normal to z"));
 }
 
 TEST_F(StepOutlines, OfOtherShapesAreRefused) {
   EXPECT_TRUE(contains(complaint(file_of(BRepPrimAPI_MakeBox(30, 20, 7).Shape())),
-                       "0.007 m thick along z, the body 0.004 m"));
+                       "0.007 m thick along z, but the thickness of the body is 0.004 m"));
   EXPECT_TRUE(contains(complaint(file_of(BRepPrimAPI_MakeSphere(20).Shape())), "extruded along z"));
-  EXPECT_TRUE(contains(complaint(scratch_.write("none.step", "hello")), "no STEP file"));
+  EXPECT_TRUE(contains(complaint(scratch_.write("none.step", "hello")), "not a STEP file"));
   EXPECT_TRUE(contains(complaint(scratch_ / "missing.step"), "cannot be read"));
   const Region pieces[] = {{corners_of({{0, 0}, {0.01, 0.01}}), {}},
                            {corners_of({{0.02, 0}, {0.03, 0.01}}), {}}};

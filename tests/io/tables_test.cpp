@@ -1,5 +1,6 @@
-// Tables and reports: numbers survive the way through text bit for bit in any locale, rows can be
-// read while the table grows, JSON is what a JSON parser reads, files appear whole.
+// Shows that numbers in tables and reports are preserved bit for bit in any locale, that rows can
+// be read while the table grows, that a JSON parser reads the JSON, and that files are replaced as
+// a whole.
 #include "io/tables.h"
 
 #include <gtest/gtest.h>
@@ -60,13 +61,13 @@ TEST(Csv, EmptyCellsQuotesAndNonFiniteNumbers) {
   CsvWriter table(scratch / "t.csv", std::vector<std::string>{"a", "b", "c", "d"});
   table.row({Cell(), "plate", "says \"no, never\"", true});
   table.row({std::nan(""), -std::numeric_limits<double>::infinity(), Cell(), Cell()});
-  // Readable at once, while the table is still open.
+  // The rows can be read at once, while the table is still open.
   EXPECT_EQ(contents_of(scratch / "t.csv"),
             "a,b,c,d\n,plate,\"says \"\"no, never\"\"\",1\nnan,-inf,,\n");
   EXPECT_THROW(table.row({1, 2}), Error);
 }
 
-// Who reads an old table while a new one takes its place sees the old one to its end.
+// A process that reads an old table while a new one replaces it gets the old one to its end.
 TEST(CsvWriter, ReplacesAnOldTableAsAWhole) {
   const Scratch scratch;
   const std::string path = scratch / "t.csv";
@@ -74,7 +75,7 @@ TEST(CsvWriter, ReplacesAnOldTableAsAWhole) {
   CsvWriter old(path, columns, std::vector<std::vector<Cell>>{{1, 0.5}, {2, "x"}});
   old.row({3, 4});
   std::ifstream reader;
-  reader.rdbuf()->pubsetbuf(nullptr, 0);  // it has not read ahead
+  reader.rdbuf()->pubsetbuf(nullptr, 0);  // without a buffer, so that nothing was read ahead
   reader.open(path);
   std::string header, rest;
   std::getline(reader, header);
@@ -85,7 +86,7 @@ TEST(CsvWriter, ReplacesAnOldTableAsAWhole) {
   EXPECT_EQ(contents_of(path), "a,b\n5,6\n");
 }
 
-// What a spreadsheet saves where the comma is the decimal point.
+// These are tables of a spreadsheet with a decimal comma.
 TEST(Csv, ReadsSemicolonsDecimalCommasAndByteOrderMarks) {
   const Scratch scratch;
   for (const char* text :
@@ -104,7 +105,7 @@ TEST(Csv, ReadsSemicolonsDecimalCommasAndByteOrderMarks) {
   }
 }
 
-/// Cells of one line, a character after the other.
+/// Returns the cells of one line, read one character after the other.
 std::vector<std::string> plain_cells(const std::string& line) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -126,7 +127,8 @@ std::vector<std::string> plain_cells(const std::string& line) {
   return cells;
 }
 
-// Cells are read where they stand in the file; here beside a reader that copies every character.
+// Cells are read in place in the file; the expected cells come from a reader that copies every
+// character.
 TEST(Csv, ReadsWhatAPlainReaderReads) {
   const Scratch scratch;
   std::mt19937 random(5);
@@ -160,8 +162,8 @@ TEST(Csv, ReadsWhatAPlainReaderReads) {
   }
 }
 
-// A copy stays when the table it was made from is gone; lines at the end that are empty are none,
-// elsewhere they are rows of one cell.
+// A copy of a table remains valid after its original. Empty lines at the end are ignored; elsewhere
+// they are rows of one cell.
 TEST(Csv, CopiesAndLineEnds) {
   const Scratch scratch;
   for (const char* text :
@@ -183,11 +185,13 @@ TEST(Csv, CopiesAndLineEnds) {
     }
     return "";
   };
-  EXPECT_TRUE(complaint("t,x\n1,2\n3\n").ends_with("t.csv:3: 1 values; the header has 2"));
-  EXPECT_TRUE(complaint("t,x\n1,2\n\n3,4\n").ends_with("t.csv:3: 1 values; the header has 2"));
+  EXPECT_TRUE(
+      complaint("t,x\n1,2\n3\n").ends_with("t.csv:3: this row has 1 values, but the header has 2"));
+  EXPECT_TRUE(complaint("t,x\n1,2\n\n3,4\n")
+                  .ends_with("t.csv:3: this row has 1 values, but the header has 2"));
 }
 
-TEST(Csv, UnwritablePlaceIsNoInputError) {
+TEST(Csv, UnwritableLocationIsNoInputError) {
   const Scratch scratch;
   scratch.write("file", "");
   const std::vector<std::string> header = {"a"};
@@ -195,7 +199,7 @@ TEST(Csv, UnwritablePlaceIsNoInputError) {
     CsvWriter table(scratch / "file/t.csv", header);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), Error::Kind::numerical);  // what was computed before stays
+    EXPECT_EQ(e.kind(), Error::Kind::numerical);  // results computed before are kept
     EXPECT_TRUE(contains(e.what(), "t.csv: cannot be written: "));
   }
 }
@@ -220,7 +224,7 @@ TEST(JsonText, IsWhatAParserReads) {
 TEST(Files, AppearWholeAndReplaceOldOnes) {
   const Scratch scratch;
   const std::string path = scratch / "a/b/run.json";
-  // A folder that was removed is not brought back.
+  // A folder that was removed is not created again.
   EXPECT_THROW(write_file(path, "old"), Error);
   EXPECT_FALSE(std::filesystem::exists(scratch / "a"));
   EXPECT_THROW(sync_file(path), Error);
@@ -235,7 +239,7 @@ TEST(Files, AppearWholeAndReplaceOldOnes) {
   EXPECT_THROW(write_file(path + "/below_a_file", ""), Error);
 }
 
-// A pipe that nobody writes to, a device that never ends: reading them would take for ever.
+// Reading a pipe without a writer or an endless device would never end.
 TEST(Csv, IsReadFromRegularFiles) {
   const Scratch scratch;
   const std::string pipe = scratch / "pipe.csv";
@@ -274,7 +278,7 @@ TEST(Report, StandsAlone) {
   EXPECT_TRUE(contains(page, "<td>compliance</td><td>&lt;1&gt;</td>"));
   EXPECT_TRUE(contains(page, "<svg id=\"p\"></svg>"));
   EXPECT_FALSE(contains(page, "<?xml"));
-  EXPECT_FALSE(contains(page, "http"));  // asks for nothing outside
+  EXPECT_FALSE(contains(page, "http"));  // has no external references
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Files for ParaView, read back with VTK's own readers: geometry, order, field values, frames of a
-// growing series, picture size and orientation, and the same bytes twice.
+// Shows that files for ParaView are right when VTK's readers read them: geometry, order, field
+// values, frames of a growing series, picture size and orientation; and that repeated files have
+// equal bytes.
 #include "io/vtk.h"
 
 #include <gtest/gtest.h>
@@ -36,8 +37,8 @@ void read(Reader& reader, const std::string& path) {
   EXPECT_EQ(reader->GetErrorCode(), 0u);
 }
 
-// A field is a function of the position: whatever the order in the file, each point and cell must
-// carry the value of its own place.
+// The field is a function of the position: for any order in the file, each point and cell must have
+// the value of its position.
 TEST(ImageData, ValuesLieWhereTheyBelong) {
   const Scratch scratch;
   const CommaLocale comma;
@@ -175,7 +176,7 @@ TEST(Png, HasTheSizeAndStandsUpright) {
   EXPECT_EQ(image->GetDimensions()[0], 15);
   EXPECT_EQ(image->GetDimensions()[1], 10);
   EXPECT_EQ(image->GetNumberOfScalarComponents(), 1);
-  // VTK reads pictures with y up as well: row 9 is the top one.
+  // VTK also reads pictures with y up: row 9 is the top one.
   EXPECT_EQ(image->GetScalarComponentAsDouble(0, 9, 0, 0), 0);
   EXPECT_EQ(image->GetScalarComponentAsDouble(0, 0, 0, 0), 255);
   EXPECT_EQ(image->GetScalarComponentAsDouble(14, 9, 0, 0), 255);
@@ -203,7 +204,7 @@ TEST(VtkFiles, AreTheSameBytesTwice) {
   EXPECT_FALSE(contains(text, "appended"));
 }
 
-// VTK writes ranges of fields as text, in the language of the process.
+// VTK writes ranges of fields as text in the locale of the process.
 TEST(VtkFiles, AreTheSameBytesWithADecimalComma) {
   const Scratch scratch;
   const Grid grid{.x0 = -0.5, .width = 1.5, .height = 0.7, .nx = 2, .ny = 2};
@@ -221,7 +222,7 @@ TEST(VtkFiles, AreTheSameBytesWithADecimalComma) {
   write("comma");
   std::ostringstream text;
   text << 1234.5;
-  EXPECT_EQ(text.str(), "1.234,5");  // the language is what it was
+  EXPECT_EQ(text.str(), "1.234,5");  // the locale is unchanged
   for (const char* ending : {".vti", ".vtp", ".vtu"}) {
     EXPECT_TRUE(contains(contents_of(scratch / "point" + ending), "L2_NORM_RANGE")) << ending;
     EXPECT_TRUE(contents_of(scratch / "point" + ending) == contents_of(scratch / "comma" + ending))
@@ -243,7 +244,7 @@ TEST(VtkFiles, RefuseWrongSizesAndNumbersThatAreNone) {
     return "";
   };
   EXPECT_TRUE(contains(message(four), "'density' is not finite at entry 2"));
-  EXPECT_TRUE(contains(message(three), "'density' has 3 values, wanted 4 times 1"));
+  EXPECT_TRUE(contains(message(three), "'density' has 3 values, but 4 times 1 values are needed"));
   EXPECT_FALSE(std::filesystem::exists(scratch / "a.vti"));
   EXPECT_THROW(write_png(scratch / "a.png", grid, four), Error);
   EXPECT_THROW(write_png(scratch / "a.png", grid, three), Error);

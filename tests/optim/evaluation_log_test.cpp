@@ -1,6 +1,6 @@
-// Evaluations that outlive their process: an optimizer that was killed goes on bit for bit,
-// whatever it is, and a log that is torn, damaged or of another problem costs evaluations, never a
-// result.
+// Shows that a killed optimizer of any kind resumes bit for bit from the log of its evaluations,
+// and that a log that is incomplete, damaged or of another problem costs additional evaluations but
+// never changes a result.
 #include "optim/evaluation_log.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 
 struct Killed {};
 
-/// A valley with a wall and a budget: Rosenbrock's function of 6 variables in pairs, its sum
-/// bounded, states near the origin that cannot be solved. It remembers its least value.
+/// Rosenbrock's function of 6 variables in pairs, with a bounded sum of variables and states near
+/// the origin that cannot be solved. acceptable() depends on the value of the last evaluation.
 class Valley final : public Problem {
  public:
   explicit Valley(int dies_after = 1 << 30, double shift = 0) : left_(dies_after), shift_(shift) {}
@@ -26,11 +26,11 @@ class Valley final : public Problem {
   VectorXd lower() const override { return VectorXd::Constant(6, -2); }
   VectorXd upper() const override { return VectorXd::Constant(6, 2); }
   VectorXd start() const override { return VectorXd::Constant(6, -0.9); }
-  Response evaluate(const VectorXd& x) override {
+  ProblemValues evaluate(const VectorXd& x) override {
     if (left_-- == 0) throw Killed();
     ++solved;
     if (x.norm() < 0.3) throw Error::numerical("no state near the origin");
-    Response out;
+    ProblemValues out;
     out.df.setZero(6);
     for (int k = 0; k < 6; k += 2) {
       const double a = 1 - x[k] + shift_, b = x[k + 1] - x[k] * x[k];
@@ -59,16 +59,16 @@ Settings settings_of(const std::string& name) {
   return out;
 }
 
-/// What a run came to, with all its rows, as bytes.
-struct Seen {
+/// The result of a run with all its rows, as bytes.
+struct DesignView {
   std::vector<double> numbers;
   int solved = 0, known = 0;
 };
 
-Seen run(const std::string& name, const std::string& path, int dies_after = 1 << 30,
-         double shift = 0) {
+DesignView run(const std::string& name, const std::string& path, int dies_after = 1 << 30,
+               double shift = 0) {
   Valley valley(dies_after, shift);
-  Seen out;
+  DesignView out;
   EvaluationLog log(path);
   RecordedProblem problem(valley, log);
   const auto observe = [&](const Iterate& it) {
@@ -83,7 +83,7 @@ Seen run(const std::string& name, const std::string& path, int dies_after = 1 <<
   return out;
 }
 
-void expect_same(const Seen& a, const Seen& b) {
+void expect_same(const DesignView& a, const DesignView& b) {
   ASSERT_EQ(a.numbers.size(), b.numbers.size());
   EXPECT_EQ(std::memcmp(a.numbers.data(), b.numbers.data(), sizeof(double) * a.numbers.size()), 0);
 }
@@ -92,22 +92,22 @@ class LoggedOptimizer : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(LoggedOptimizer, GoesOnBitForBit) {
   const Scratch scratch;
-  const Seen whole = run(GetParam(), scratch / "whole");
+  const DesignView whole = run(GetParam(), scratch / "whole");
   ASSERT_GT(whole.solved, 10);
   for (const int dies_after : {0, 1, 4, 9}) {
     const std::string path = scratch / ("after_" + std::to_string(dies_after));
-    // Ipopt's callbacks let nothing through: the run ends by itself there, having failed.
+    // Ipopt's callbacks pass no exception on: the run ends as failed instead.
     try {
       run(GetParam(), path, dies_after);
     } catch (...) {
     }
-    const Seen again = run(GetParam(), path);
+    const DesignView again = run(GetParam(), path);
     expect_same(again, whole);
     EXPECT_EQ(again.known, dies_after);
     EXPECT_EQ(again.solved + again.known, whole.solved);
   }
-  // Done, it is all known.
-  const Seen once_more = run(GetParam(), scratch / "whole");
+  // All evaluations of a finished run are in the log.
+  const DesignView once_more = run(GetParam(), scratch / "whole");
   expect_same(once_more, whole);
   EXPECT_EQ(once_more.solved, 0);
 }
@@ -121,29 +121,31 @@ INSTANTIATE_TEST_SUITE_P(All, LoggedOptimizer, ::testing::ValuesIn(optimizer_nam
                            return out;
                          });
 
-/// All bytes of a log after `kept` of whole records.
+/// A log that is cut off or damaged at some byte is used up to the last complete record and
+/// rewritten completely.
 TEST(EvaluationLog, EndsWhereItIsTornOrDamaged) {
   const Scratch scratch;
   const std::string path = scratch / "log";
-  const Seen whole = run("mma", path);
+  const DesignView whole = run("mma", path);
   const std::string bytes = contents_of(path);
   const size_t record = (bytes.size() - 24) / static_cast<size_t>(whole.solved);
   for (const size_t at : {size_t{0}, size_t{10}, size_t{24}, 24 + record / 2, 24 + 5 * record + 3,
                           bytes.size() - 1}) {
     scratch.write("log", bytes.substr(0, at));
     expect_same(run("mma", path), whole);
-    EXPECT_EQ(contents_of(path), bytes) << "torn at " << at;
+    EXPECT_EQ(contents_of(path), bytes) << "damaged at " << at;
     std::string damaged = bytes;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
     scratch.write("log", damaged);
-    const Seen mended = run("mma", path);
-    expect_same(mended, whole);
-    EXPECT_LT(mended.known, whole.solved);
+    const DesignView post_processed = run("mma", path);
+    expect_same(post_processed, whole);
+    EXPECT_LT(post_processed.known, whole.solved);
     EXPECT_EQ(contents_of(path), bytes) << "damaged at " << at;
   }
 }
 
-// The answers of another problem are not those of this one once its iterates part.
+// Recorded evaluations are used only as long as the design is identical bit for bit; the records
+// after the first other design are dropped.
 TEST(EvaluationLog, KnowsOnlyTheVeryDesign) {
   const Scratch scratch;
   EvaluationLog first(scratch / "log");
@@ -167,7 +169,7 @@ TEST(EvaluationLog, KnowsOnlyTheVeryDesign) {
   EXPECT_TRUE(again.knew_last());
   EXPECT_FALSE(again.next(VectorXd::Constant(2, std::nextafter(0.5, 1))).has_value());
   EXPECT_FALSE(again.knew_last());
-  EXPECT_FALSE(again.next(known.x).has_value());  // what followed is dropped
+  EXPECT_FALSE(again.next(known.x).has_value());  // the following records were dropped
   EvaluationLog third(scratch / "log");
   EXPECT_TRUE(third.next(VectorXd::Constant(2, 0.5)).has_value());
   EXPECT_FALSE(third.next(known.x).has_value());

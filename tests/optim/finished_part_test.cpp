@@ -1,5 +1,5 @@
-// The part that a design stands for: narrow places are widened where they are few, and left where
-// the design has not come to its widths.
+// Shows that the exported part widens violations of the minimum width if they are few, and leaves
+// them if the design is far from its widths.
 
 #include "optim/mmc/problem/finished_part.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFeature = 0.016, kTolerance = 1e-5;
 
-/// A bar of several, whose rounded ends overlap by a length.
+/// Returns a bar made of n bars whose rounded ends overlap by `overlap`.
 std::vector<Component> chain(int n, double overlap) {
   const double length = kGrid.width / n;
   std::vector<Component> out;
@@ -33,7 +33,7 @@ double feature(const BodyProblem& problem, const std::vector<Region>& regions) {
   return features_of(problem, regions).solid;
 }
 
-/// The bar whose necks are next to a width.
+/// Returns the bar of n bars whose necks are just above a width.
 std::vector<Component> with_necks(int n, double width) {
   const BodyProblem problem = problem_of(0);
   double low = 0, high = 0.03;
@@ -45,8 +45,8 @@ std::vector<Component> with_necks(int n, double width) {
   return chain(n, high);
 }
 
-// Fillets of a tenth of the feature leave the neck about as it is. A disc makes it as wide as
-// asked.
+// Fillets of a tenth of the feature size hardly change the neck. An added disc gives it the
+// required width.
 TEST(FinishedPart, IsAsWideAsAsked) {
   const std::vector<Component> components = with_necks(2, 0.75 * kFeature);
   const BodyProblem problem = problem_of(0.1 * kFeature);
@@ -60,7 +60,7 @@ TEST(FinishedPart, IsAsWideAsAsked) {
   EXPECT_LT(area(part.regions), area(given) + kFeature * kFeature);
 }
 
-// With seven necks the design has not come to its widths: it stays as its fillets leave it.
+// With seven necks the design is far from its widths: only fillets are applied.
 TEST(FinishedPart, IsLeftFarFromItsWidths) {
   const std::vector<Component> components = with_necks(8, 0.75 * kFeature);
   const BodyProblem problem = problem_of(0.02 * kFeature);
@@ -73,8 +73,8 @@ TEST(FinishedPart, IsLeftFarFromItsWidths) {
   EXPECT_EQ(area(part.regions), area(given));
 }
 
-// Fillets close a gap between two ends, or leave it. Of some gaps the closing keeps two tips that
-// touch each other in the middle, thinner than half of the feature.
+// Fillets close a gap between two ends or leave it open. At some gaps the closing leaves two tips
+// that touch in the middle and are thinner than half of the feature size.
 TEST(FinishedPart, ClosesAGapToTheFullWidthOrNotAtAll) {
   const BodyProblem problem = problem_of(0.8 * kFeature);
   int closed = 0, thin = 0;

@@ -1,5 +1,5 @@
-// Forces that are spread over places: resultants, moments, the pressure of a pin, and the turn of a
-// ring under a torque.
+// Shows that forces distributed over a location have the right resultant and moment, that a pin has
+// the expected pressure, and that a ring under a torque turns by the analytic angle.
 
 #include "optim/verification/force_spread.h"
 
@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Points of a circle, counterclockwise, uneven where asked for, and the part of the rim of each.
+/// Points of a circle, counterclockwise and optionally unequally spaced, and the fraction of the
+/// rim that belongs to each.
 struct Rim {
   std::vector<Vec2> points;
   std::vector<double> shares;
@@ -50,7 +51,8 @@ double moment_around(const Vec2& center, const Rim& rim, const std::vector<Vec2>
   return out;
 }
 
-// The pressure of a pin is 2 F / (pi R) cos(angle) on the half of the bore before it.
+// Reference: the pressure of a pin is 2 F / (pi R) cos(angle) on the half of the bore in front of
+// it.
 TEST(ForceSpread, OfAPinIsACosine) {
   const Vec2 center(3, -2), force(-30, 40);
   const double radius = 0.25;
@@ -69,13 +71,14 @@ TEST(ForceSpread, OfAPinIsACosine) {
   }
 }
 
-// The resultant is the force also where the bore has material on one side of the force only.
+// The resultant is the force even if the bore has material on one side of the force only.
 TEST(ForceSpread, OfAPinHasTheForceAsItsResultant) {
   const Vec2 center(0, 0), force(0, -7);
   const Rim quarter(center, 2, 31, 0.05, -0.5 * kPi, 0.1 * kPi);
   const std::vector<Vec2> found = spread({force, 0, true, center}, quarter.points, quarter.shares);
   EXPECT_NEAR((sum(found) - force).norm(), 0, 1e-12);
-  // Material that lies behind the pin does not hold it, and one point holds it in one direction.
+  // Material behind the pin cannot carry its force, and a single point can carry it in one
+  // direction only; no distribution is returned.
   const Rim behind(center, 2, 31, 0, 0.1 * kPi, 0.9 * kPi), point(center, 2, 1, 0, -1.7, -1.4);
   EXPECT_TRUE(spread({force, 0, true, center}, behind.points, behind.shares).empty());
   EXPECT_TRUE(spread({force, 0, true, center}, point.points, point.shares).empty());
@@ -103,8 +106,8 @@ std::vector<Vec2> circle(double radius, int sides, bool clockwise) {
   return out;
 }
 
-// A ring that is held at its outer rim turns by M / (4 pi G t) (1 / a^2 - 1 / b^2) at the inner
-// one: its shear stress is M / (2 pi r^2 t).
+// Reference: a ring held at its outer rim turns by M / (4 pi G t) (1 / a^2 - 1 / b^2) at its inner
+// rim, because its shear stress is M / (2 pi r^2 t).
 TEST(ForceSpread, TorqueTurnsARingAsItsShearSays) {
   const double a = 1, b = 3, moment = 5, thickness = 0.2, young = 7, nu = 0.3;
   const double shear_modulus = young / (2 * (1 + nu));

@@ -1,4 +1,4 @@
-// The Taylor test tells right gradients (order 2) from wrong ones (order 1).
+// Shows that the Taylor test distinguishes correct gradients (order 2) from wrong ones (order 1).
 
 #include "tests/support/gradient_check.h"
 
@@ -19,7 +19,7 @@ VectorXd d_smooth(const VectorXd& x) {
 
 TEST(TaylorTest, RightGradientsAreOfOrderTwo) {
   const TaylorTest test = taylor_test(smooth, d_smooth(kX), kX, kDirection, 1e-1, 4);
-  // The next term of the expansion is t³/6: it bends the order by less than 0.05 below t = 0.1.
+  // The next term of the expansion is t³/6; it changes the order by less than 0.05 for t < 0.1.
   EXPECT_NEAR(test.order, 2, 0.05) << test.table();
   EXPECT_GE(test.decades, 3) << test.table();
   EXPECT_EQ(test.steps.size(), 9u);
@@ -30,18 +30,19 @@ TEST(TaylorTest, RightGradientsAreOfOrderTwo) {
 
 TEST(TaylorTest, WrongGradientsAreOfOrderOne) {
   const VectorXd wrong = 1.001 * d_smooth(kX);
-  // An error of 1e-3 of the slope rules once t is well below it.
+  // An error of 1e-3 of the derivative dominates as soon as t is much smaller.
   EXPECT_NEAR(taylor_test(smooth, wrong, kX, kDirection, 1e-5, 3).order, 1, 0.05);
 }
 
-// The quadratic remainder is t² exactly, until round-off ends the fit.
+// The remainder is exactly t², until round-off ends the fit.
 TEST(TaylorTest, RoundOffIsLeftOut) {
   const auto square = [](const VectorXd& x) { return 1 + x.squaredNorm(); };
   const VectorXd unit = Eigen::Vector2d(1, 0);
   const TaylorTest test = taylor_test(square, 2 * kX, kX, unit, 1, 12);
   EXPECT_NEAR(test.remainders[0], 1, 1e-14);
-  EXPECT_NEAR(test.order, 2, 0.02) << test.table();  // last points fitted: 10 % round-off
-  EXPECT_LT(test.decades, 9) << test.table();        // √1e-15 of 1: no more than 7.5 are left
+  // the last fitted points contain 10 % round-off
+  EXPECT_NEAR(test.order, 2, 0.02) << test.table();
+  EXPECT_LT(test.decades, 9) << test.table();  // √1e-15 of 1: at most 7.5 decades remain
   EXPECT_NE(test.table().find("order"), std::string::npos);
 }
 

@@ -1,5 +1,6 @@
-// What happens when something goes wrong: problems that fail, come apart or throw, observers that
-// stop, names and options that do not exist. The best design is kept, and the message says why.
+// Shows that optimizers handle failures: problems that fail, designs that are not acceptable,
+// exceptions, observers that stop, unknown names and options. The best design is kept, and the
+// message gives the reason.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +23,8 @@ Settings defaults(const std::string& name) {
   return settings;
 }
 
-/// The cantilever, that does something else from some evaluation on, or where `bad` says so.
+/// The cantilever with a modified response (`trouble`) or with designs that are refused
+/// (`refuses`).
 class Troubled : public Problem {
  public:
   int n_variables() const override { return sound_.n_variables(); }
@@ -30,14 +32,14 @@ class Troubled : public Problem {
   VectorXd lower() const override { return sound_.lower(); }
   VectorXd upper() const override { return sound_.upper(); }
   VectorXd start() const override { return sound_.start(); }
-  Response evaluate(const VectorXd& x) override {
-    Response r = sound_.evaluate(x);
+  ProblemValues evaluate(const VectorXd& x) override {
+    ProblemValues r = sound_.evaluate(x);
     if (trouble) trouble(sound_.evaluations, x, r);
     return r;
   }
   bool acceptable(const VectorXd& x) override { return !refuses || !refuses(x); }
 
-  std::function<void(int, const VectorXd&, Response&)> trouble;
+  std::function<void(int, const VectorXd&, ProblemValues&)> trouble;
   std::function<bool(const VectorXd&)> refuses;
 
  private:
@@ -59,7 +61,7 @@ void expect_best_kept(const Result& result, const std::vector<double>& feasible_
 
 TEST_P(EveryGuard, NanObjectiveKeepsTheBestDesign) {
   Troubled problem;
-  problem.trouble = [](int evaluation, const VectorXd&, Response& r) {
+  problem.trouble = [](int evaluation, const VectorXd&, ProblemValues& r) {
     if (evaluation > 6) r.f = std::numeric_limits<double>::quiet_NaN();
   };
   std::vector<double> feasible;
@@ -76,7 +78,7 @@ TEST_P(EveryGuard, NanObjectiveKeepsTheBestDesign) {
 
 TEST_P(EveryGuard, NumericalErrorsKeepTheBestDesign) {
   Troubled problem;
-  problem.trouble = [](int evaluation, const VectorXd&, Response&) {
+  problem.trouble = [](int evaluation, const VectorXd&, ProblemValues&) {
     if (evaluation > 6) throw Error::numerical("static solve: K is not positive definite");
   };
   std::vector<double> feasible;
@@ -90,11 +92,11 @@ TEST_P(EveryGuard, NumericalErrorsKeepTheBestDesign) {
   EXPECT_TRUE(contains(result.message, "K is not positive definite")) << result.message;
 }
 
-// Anything but a numerical Error is not ours to swallow: it arrives as it was thrown, through
-// NLopt's C and through Ipopt.
+// An exception other than a numerical Error is passed on unchanged, also through NLopt's C code and
+// through Ipopt.
 TEST_P(EveryGuard, OtherExceptionsPassThrough) {
   Troubled problem;
-  problem.trouble = [](int evaluation, const VectorXd&, Response&) {
+  problem.trouble = [](int evaluation, const VectorXd&, ProblemValues&) {
     if (evaluation > 3) throw std::logic_error("someone's mistake");
   };
   try {
@@ -114,28 +116,29 @@ TEST_P(EveryGuard, ExceptionsOfTheObserverPassThrough) {
   EXPECT_THROW(make_optimizer(defaults(GetParam()))->minimize(problem, throws), std::runtime_error);
 }
 
-// An occasional failure (here: a third of the designs) is stepped back from.
+// An optimizer steps back from occasional failures (here a third of the designs).
 TEST_P(EveryGuard, StepsBackFromFailures) {
   Troubled problem;
-  problem.trouble = [](int evaluation, const VectorXd&, Response&) {
+  problem.trouble = [](int evaluation, const VectorXd&, ProblemValues&) {
     if (evaluation % 3 == 2) throw Error::numerical("no luck");
   };
   Settings settings = defaults(GetParam());
   settings.max_iterations = 400;
   const Result result = make_optimizer(settings)->minimize(problem, {});
-  EXPECT_LT(result.response.f, 1.40) << result.message;  // from 1.56 most of the way to 1.340
+  EXPECT_LT(result.response.f, 1.40) << result.message;  // most of the way from 1.56 to 1.340
   EXPECT_LE(result.violation, 1e-5);
 }
 
-// Designs with x₁ > 5.4 have come apart; the optimum beyond (6.02) must not be entered. Nobody can
-// slide along a wall that has no gradient: something better than the start is all that is asked.
+// Designs with x₁ > 5.4 are not acceptable, and the optimum (6.02) lies beyond this limit. The
+// limit has no gradient that an optimizer could follow; the test only requires a better design than
+// the start.
 TEST_P(EveryGuard, UnacceptableDesignsAreNotEntered) {
   Troubled problem;
   problem.refuses = [](const VectorXd& x) { return x[0] > 5.4; };
   Settings settings = defaults(GetParam());
   settings.max_iterations = 300;
   const Result result = make_optimizer(settings)->minimize(problem, [&](const Iterate& it) {
-    // NLopt's rows are evaluations; refused ones are not rows either.
+    // NLopt reports every evaluation as a row, except refused designs.
     EXPECT_LE((*it.x)[0], 5.4);
     return true;
   });
@@ -144,7 +147,7 @@ TEST_P(EveryGuard, UnacceptableDesignsAreNotEntered) {
   EXPECT_LT(result.response.f, 1.56 - 4e-3);
 }
 
-// A start that is not acceptable itself does not stop the search; the first one that is, is kept.
+// An unacceptable start does not stop the search; the first acceptable design is kept.
 TEST_P(EveryGuard, LeavesAnUnacceptableStart) {
   Troubled problem;
   problem.refuses = [](const VectorXd& x) { return x[4] > 4.9; };  // the start has 5
@@ -156,7 +159,7 @@ TEST_P(EveryGuard, LeavesAnUnacceptableStart) {
 TEST_P(EveryGuard, StartThatFailsIsAnError) {
   for (const bool throws : {false, true}) {
     Troubled problem;
-    problem.trouble = [throws](int, const VectorXd&, Response& r) {
+    problem.trouble = [throws](int, const VectorXd&, ProblemValues& r) {
       if (throws) throw Error::numerical("singular");
       r.df[2] = std::numeric_limits<double>::infinity();
     };
@@ -171,7 +174,7 @@ TEST_P(EveryGuard, StartThatFailsIsAnError) {
 }
 
 TEST_P(EveryGuard, BadStartsAndEmptyProblemsAreInputErrors) {
-  const auto nothing = [](const VectorXd&, Response&) {};
+  const auto nothing = [](const VectorXd&, ProblemValues&) {};
   Analytic empty("", VectorXd(), VectorXd(), VectorXd(), 0, nothing, 0);
   Analytic outside("", VectorXd::Zero(2), VectorXd::Ones(2), VectorXd::Constant(2, 1.5), 0, nothing,
                    0);
@@ -206,8 +209,8 @@ TEST_P(EveryGuard, KeepsToItsIterations) {
   const Result result = make_optimizer(settings)->minimize(problem, {});
   EXPECT_EQ(result.stop, Stop::iteration_limit) << result.message;
   EXPECT_EQ(result.iterations, 9);
-  // One more evaluation may put the problem back to the result; Ipopt's line search has as many
-  // again, and its start is moved off the bounds.
+  // One more evaluation may set the problem back to the result. Ipopt's line search may need as
+  // many again, and Ipopt moves its start off the bounds.
   EXPECT_LE(result.evaluations, GetParam() == "ipopt" ? 19 : 10);
 }
 
@@ -220,16 +223,16 @@ TEST_P(EveryGuard, KeepsToItsStateSolves) {
   EXPECT_EQ(result.stop, Stop::evaluation_limit) << result.message;
   EXPECT_TRUE(contains(result.message, "9 state solves")) << result.message;
   EXPECT_GE(result.evaluations, 9);
-  EXPECT_LE(result.evaluations, 10);  // the problem may be put back to the result
+  EXPECT_LE(result.evaluations, 10);  // the problem may be set back to the result
   EXPECT_LE(problem.evaluations, 10);
   EXPECT_TRUE(std::isfinite(result.response.f));
 }
 
-// Refused designs cost state solves, too: the limit holds while an optimizer steps back.
+// Refused designs cost state solves, too: the limit is kept while an optimizer steps back.
 TEST_P(EveryGuard, KeepsToItsStateSolvesWhenDesignsAreRefused) {
   Troubled problem;
   int solves = 0;
-  problem.trouble = [&](int evaluation, const VectorXd&, Response&) {
+  problem.trouble = [&](int evaluation, const VectorXd&, ProblemValues&) {
     solves = evaluation;
     if (evaluation > 4) throw Error::numerical("no luck");
   };
@@ -239,7 +242,8 @@ TEST_P(EveryGuard, KeepsToItsStateSolvesWhenDesignsAreRefused) {
   const Result result = make_optimizer(settings)->minimize(problem, {});
   EXPECT_EQ(result.stop, Stop::evaluation_limit) << result.message;
   EXPECT_LE(solves, 8);
-  EXPECT_LE(result.response.f, 1.56);  // the best of the sound ones, none worse than the start
+  // the best of the acceptable designs, at least as good as the start
+  EXPECT_LE(result.response.f, 1.56);
 }
 
 TEST_P(EveryGuard, UnknownOptionsAreNamed) {
@@ -251,7 +255,7 @@ TEST_P(EveryGuard, UnknownOptionsAreNamed) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
     EXPECT_TRUE(contains(error.what(), GetParam())) << error.what();
-    EXPECT_TRUE(contains(error.what(), "'rho_init' is not known")) << error.what();
+    EXPECT_TRUE(contains(error.what(), "'rho_init' is unknown")) << error.what();
     const char* known =
         GetParam().ends_with("mma") && !GetParam().starts_with("nlopt") ? "asyinit" : "box";
     EXPECT_TRUE(contains(error.what(), known)) << error.what();
@@ -267,7 +271,7 @@ TEST(Table, UnknownOptimizersAreNamed) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_TRUE(contains(error.what(), "'simplex' is not known")) << error.what();
+    EXPECT_TRUE(contains(error.what(), "'simplex' is unknown")) << error.what();
     for (const std::string& name : optimizer_names()) {
       EXPECT_TRUE(contains(error.what(), name)) << error.what();
     }
@@ -282,13 +286,14 @@ TEST(Table, SettingsOutOfRangeAreErrors) {
   settings.max_iterations = 0;
   EXPECT_THROW(make_optimizer(settings), Error);
   settings = defaults("mma");
-  settings.options = {{"asydecr", 1.5}};  // asymptotes would never close in
+  settings.options = {{"asydecr", 1.5}};  // asymptotes would never move closer
   EXPECT_THROW(make_optimizer(settings), Error);
   settings.options = {{"raa0", std::numeric_limits<double>::quiet_NaN()}};
   EXPECT_THROW(make_optimizer(settings), Error);
 }
 
-// mma without time to converge: its iterates hover about the constraint, the result does not.
+// The iterations end before convergence: the iterates of mma oscillate about the constraint, but
+// the result is feasible.
 TEST(Mma, ResultIsFeasibleWhenIteratesHover) {
   Settings settings = defaults("mma");
   settings.feasibility = 1e-9;
@@ -306,7 +311,7 @@ TEST(Mma, ResultIsFeasibleWhenIteratesHover) {
   }
 }
 
-// Change-based stop: off by default, and only at feasible designs.
+// The stop by small changes is off by default and applies only at feasible designs.
 TEST(Mma, StopsWhenNothingChanges) {
   Analytic problem = cantilever();
   Settings settings = defaults("mma");
@@ -319,16 +324,16 @@ TEST(Mma, StopsWhenNothingChanges) {
   EXPECT_TRUE(contains(result.message, "three iterations")) << result.message;
 }
 
-// The logarithm of a compliance curves by 4 or more along some variables. Asymptotes that come as
-// near as 2e-4 follow a minimum of such curvatures inside the bounds; those that keep 0.01 away
-// (8 raa0 / asymin = 8 of 10 f) swing about it.
+// The logarithm of a compliance has a curvature of 4 or more along some variables. Asymptotes that
+// may come as near as 2e-4 converge to a minimum of such curvatures inside the bounds; with a least
+// distance of 0.01 (8 raa0 / asymin = 8 for 10 f) they oscillate about it.
 TEST(Mma, SettlesAtMinimaThatCurve) {
   const VectorXd curvature = Eigen::Vector4d(0.5, 4, 10, 30);
   const VectorXd target = Eigen::Vector4d(0.31, 0.62, 0.47, 0.55);
   for (const bool near : {true, false}) {
     Analytic problem(
         "bowl", VectorXd::Zero(4), VectorXd::Ones(4), VectorXd::Constant(4, 0.5), 0,
-        [&](const VectorXd& x, Response& r) {
+        [&](const VectorXd& x, ProblemValues& r) {
           r.df = curvature.cwiseProduct(x - target);
           r.f = 0.5 * r.df.dot(x - target);
         },
@@ -342,8 +347,9 @@ TEST(Mma, SettlesAtMinimaThatCurve) {
   }
 }
 
-// A rest: the objectives of the last rows lie within a band, the row is feasible and near KKT, and
-// no row before was all of that. Whoever asks for no KKT residual stops no later.
+// Stagnation: the objectives of the last rows lie within a band, the design is feasible and its KKT
+// residual is small; the search stops at the first such row. Without a limit of the KKT residual it
+// stops no later.
 TEST(Mma, StopsWhereTheObjectiveRests) {
   Settings settings = defaults("mma");
   settings.kkt_tolerance = 0;
@@ -353,20 +359,20 @@ TEST(Mma, StopsWhereTheObjectiveRests) {
     settings.rest = {6, 1e-3, near_kkt ? 3e-4 : std::numeric_limits<double>::infinity()};
     Analytic problem = cantilever();
     std::vector<double> f;
-    std::vector<bool> rests;
+    std::vector<bool> stagnates;
     const Result result = make_optimizer(settings)->minimize(problem, [&](const Iterate& it) {
       f.push_back(it.response->f);
       bool now =
           f.size() > 6 && it.violation <= settings.feasibility && it.kkt <= settings.rest.kkt;
       for (size_t k = f.size() - std::min<size_t>(f.size(), 7); k < f.size(); ++k)
         for (size_t l = k; l < f.size(); ++l) now = now && std::abs(f[k] - f[l]) <= 1e-3;
-      rests.push_back(now);
+      stagnates.push_back(now);
       return true;
     });
     EXPECT_EQ(result.stop, Stop::converged);
     EXPECT_TRUE(contains(result.message, "over 6 iterations")) << result.message;
-    EXPECT_EQ(std::count(rests.begin(), rests.end(), true), 1);
-    EXPECT_TRUE(rests.back());
+    EXPECT_EQ(std::count(stagnates.begin(), stagnates.end(), true), 1);
+    EXPECT_TRUE(stagnates.back());
     EXPECT_LE(result.violation, settings.feasibility);
     if (near_kkt) {
       EXPECT_LE(result.kkt, settings.rest.kkt);
@@ -376,7 +382,7 @@ TEST(Mma, StopsWhereTheObjectiveRests) {
   EXPECT_LE(stops[1], stops[0]);
 }
 
-// What never rests says by how much not.
+// If the objective never stagnates, the message gives its last change.
 TEST(Mma, SaysHowFarTheObjectiveWasFromRest) {
   Analytic problem = cantilever();
   Settings settings = defaults("mma");
@@ -385,8 +391,7 @@ TEST(Mma, SaysHowFarTheObjectiveWasFromRest) {
   settings.rest = {5, 0, 0};
   const Result result = make_optimizer(settings)->minimize(problem, {});
   EXPECT_EQ(result.stop, Stop::iteration_limit);
-  EXPECT_TRUE(contains(result.message, "change of the objective over the last 5 "))
-      << result.message;
+  EXPECT_TRUE(contains(result.message, " over the last 5 iterations")) << result.message;
 }
 
 }  // namespace

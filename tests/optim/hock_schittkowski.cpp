@@ -8,12 +8,12 @@
 // Problems of Hock & Schittkowski (1981), Test Examples for Nonlinear Programming Codes, Lecture
 // Notes in Economics and Mathematical Systems 187: a choice of those with inequality constraints
 // only. They are written as min f(x) subject to c(x) >= 0, with x(1) the first entry; gradients by
-// forward differentiation. Bounds the book does not have are wide ones of ours (±100, 0 to 100; 1
-// to 1000 for number 64) that are not active at the optimum, units are chosen so that x, f and g
-// are of the order of 1 or 10, and a start outside of its bounds (number 65) is moved onto them.
+// forward differentiation. Where the book has no bounds, wide ones (±100, 0 to 100; 1 to 1000 for
+// number 64) are added that are not active at the optimum. Units are chosen so that x, f and g are
+// of the order of 1 or 10, and a start outside of its bounds (number 65) is moved onto them.
 //
 // Number 33 is left out: f and all constraints are stationary in x(2) at its published start, where
-// methods of first order stay.
+// first-order methods stay.
 namespace flexmorph::optim::test {
 namespace {
 
@@ -26,7 +26,7 @@ VectorXd vec(std::initializer_list<double> values) {
 
 VectorXd all(int n, double value) { return VectorXd::Constant(n, value); }
 
-/// x(1) to x(n), as the book counts.
+/// The variables x(1) to x(n) with the numbering of the book.
 struct Variables {
   std::vector<Ad> entries;
   const Ad& operator()(int i) const { return entries[static_cast<size_t>(i - 1)]; }
@@ -46,7 +46,7 @@ struct Printed {
 
 Analytic problem(const Printed& p) {
   const VectorXd unit = p.x_unit.size() > 0 ? p.x_unit : all(static_cast<int>(p.lower.size()), 1);
-  const auto evaluate = [p, unit](const VectorXd& y, Response& r) {
+  const auto evaluate = [p, unit](const VectorXd& y, ProblemValues& r) {
     Variables x;
     for (int j = 0; j < y.size(); ++j) {
       x.entries.emplace_back(unit[j] * y[j], y.size(), j);
@@ -176,7 +176,7 @@ std::vector<Printed> of_three_variables() {
   };
 }
 
-/// Number 83 (Colville's third problem): three quantities between two bounds each.
+/// Number 83 (Colville's third problem): three quantities, each between two bounds.
 Printed himmelblau() {
   return {
       "HS83",
@@ -221,7 +221,7 @@ Printed transformer() {
           vec({10, 10, 10, 10, 1, 1})};
 }
 
-/// Number 104: the design of a reactor. Its bounds on f itself are not active.
+/// Number 104: the design of a reactor. The bounds of the book on f itself are not active.
 Printed reactor() {
   return {
       "HS104",

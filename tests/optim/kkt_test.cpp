@@ -1,5 +1,5 @@
-// The KKT residual is zero at known optima and nowhere else; its multipliers are those of an
-// independent solution.
+// Shows that the KKT residual is zero at known optima and only there, and that its multipliers are
+// those of an independent solution.
 
 #include "optim/kkt.h"
 
@@ -19,7 +19,7 @@ TEST(KktResidual, VanishesAtKnownOptimaOnly) {
     if (problem.solution.size() == 0) continue;
     SCOPED_TRACE(problem.name);
     const VectorXd lower = problem.lower(), upper = problem.upper();
-    const Response r = problem.evaluate(problem.solution);
+    const ProblemValues r = problem.evaluate(problem.solution);
     EXPECT_NEAR(r.f, problem.optimum, 1e-12 * (1 + std::abs(r.f)));
     // Solutions are exact or bisected to round-off; gradients are below 100.
     EXPECT_LE(kkt_residual(r, problem.solution, lower, upper), 1e-11);
@@ -31,7 +31,7 @@ TEST(KktResidual, VanishesAtKnownOptimaOnly) {
   }
 }
 
-// HS43: the first and third constraint are active, with multipliers 1 and 2.
+// HS43: the first and third constraints are active, with multipliers 1 and 2.
 TEST(KktResidual, MultipliersOfHockSchittkowski43) {
   Analytic problem = hock_schittkowski_43();
   const KktPoint kkt = kkt_point(problem.evaluate(problem.solution), problem.solution,
@@ -41,9 +41,10 @@ TEST(KktResidual, MultipliersOfHockSchittkowski43) {
   EXPECT_NEAR(kkt.lambda[2], 2, 1e-12);
 }
 
-// A multiplier must not be negative: a constraint that pulls the other way leaves the gradient.
+// Multipliers are not negative: a constraint whose gradient has the wrong direction does not reduce
+// the residual.
 TEST(KktResidual, NegativeMultipliersAreNotUsed) {
-  Response r;
+  ProblemValues r;
   r.df = Eigen::Vector2d(1, 0);
   r.g = VectorXd::Zero(1);
   r.dg = Eigen::RowVector2d(1, 0);
@@ -57,7 +58,7 @@ TEST(KktResidual, NegativeMultipliersAreNotUsed) {
 }
 
 TEST(KktResidual, BoundsDropEntriesThatPushAgainstThem) {
-  Response r;
+  ProblemValues r;
   r.df = Eigen::Vector3d(2, -3, 0.5);
   r.g = VectorXd();
   r.dg = MatrixXd(0, 3);
@@ -67,10 +68,10 @@ TEST(KktResidual, BoundsDropEntriesThatPushAgainstThem) {
   EXPECT_EQ(kkt_residual(r, Eigen::Vector3d(0, 1, 0.5), lower, upper), 0.5);
 }
 
-// The bounds that count depend on the multiplier: optimum of a linear program in two variables.
-// min -x₁ - 3 x₂, x₁ + x₂ <= 1, x in [0, 1]²: at (0, 1) with multiplier 3 - (anything up to 2).
+// Which bounds are active depends on the multiplier: the linear program min -x₁ - 3 x₂, x₁ + x₂ <=
+// 1, x in [0, 1]² has its optimum at (0, 1), with a multiplier between 1 and 3.
 TEST(KktResidual, BoundsAndConstraintsTogether) {
-  Response r;
+  ProblemValues r;
   r.df = Eigen::Vector2d(-1, -3);
   r.g = VectorXd::Zero(1);
   r.dg = Eigen::RowVector2d(1, 1);
@@ -79,7 +80,8 @@ TEST(KktResidual, BoundsAndConstraintsTogether) {
   EXPECT_GE(kkt_residual(r, Eigen::Vector2d(1, 0), lower, upper), 0.5);
 }
 
-// Against projected gradients on random problems; some with dependent constraints.
+// Checks the optimality conditions of the solution on random problems, some with dependent
+// constraints.
 TEST(NonnegativeMinimum, SatisfiesItsConditions) {
   std::mt19937 generator(7);
   std::normal_distribution<double> normal;

@@ -1,5 +1,6 @@
-// Solutions of the MMA subproblem satisfy its KKT conditions, computed here from its statement,
-// and agree with brute force; many constraints, none, and constraints that cannot be met work.
+// Shows that solutions of the MMA subproblem satisfy its KKT conditions, which are evaluated here
+// independently, and agree with a brute-force search; with many constraints, with none, and with
+// constraints that cannot be satisfied.
 
 #include "optim/mma_subproblem.h"
 
@@ -11,7 +12,8 @@
 namespace flexmorph::optim::test {
 namespace {
 
-/// Random slopes about x = 0, asymptotes 0.1 away, bounds 0.05 away.
+/// Returns a subproblem with random derivatives at x = 0, asymptotes at a distance of 0.1 and
+/// bounds at 0.05.
 MmaSubproblem random_subproblem(int n, int m, unsigned seed) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> normal;
@@ -50,8 +52,8 @@ double objective(const MmaSubproblem& p, const VectorXd& x) {
   return p.p0.dot((p.upp - x).cwiseInverse()) + p.q0.dot((x - p.low).cwiseInverse());
 }
 
-/// Largest violation of the conditions of the subproblem as it is stated, ξ and η eliminated:
-/// the slope in x may point outwards at a bound only.
+/// Returns the largest violation of the optimality conditions of the subproblem, with ξ and η
+/// eliminated: a derivative with respect to x may point outwards only at a bound.
 double kkt_from_statement(const MmaSubproblem& p, const MmaSolution& s) {
   const VectorXd u = (p.upp - s.x).cwiseInverse().array().square();
   const VectorXd l = (s.x - p.low).cwiseInverse().array().square();
@@ -83,15 +85,16 @@ TEST(MmaSubproblem, SolutionSatisfiesItsConditions) {
       if (seed == 5) p.a.setOnes();  // z takes part: a min-max problem
       const MmaSolution& s = solver.solve(p);
       EXPECT_TRUE(s.solved) << n << " " << m << " " << seed;
-      EXPECT_LE(s.kkt, 2e-9);  // the last barrier parameter is 1e-9, residuals below 0.9 of it
-      // Products of complementary variables are at most that; rooms are divided by 1e-3 above.
+      EXPECT_LE(s.kkt, 2e-9);  // the last barrier parameter is 1e-9, residuals are below 0.9 of it
+      // Products of complementary variables are at most 1e-9; distances to bounds are divided by
+      // 1e-3 above.
       EXPECT_LE(kkt_from_statement(p, s), 5e-6) << n << " " << m << " " << seed;
     }
   }
 }
 
-/// A worst case over m - 1 loads: bound - one variable - below m - 1 smoothly changing constraints,
-/// and a volume. Functions are zero or below at x = 0.
+/// Returns a worst case over m - 1 loads: m - 1 smoothly varying constraints below a bound, which
+/// is a variable, and a volume constraint. All functions are at most zero at x = 0.
 MmaSubproblem worst_case(int n, int m, unsigned seed) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> normal;
@@ -129,13 +132,15 @@ TEST(MmaSubproblem, ManyConstraintsSatisfyTheirConditionsInFewSteps) {
         EXPECT_TRUE(s.solved);
         EXPECT_LE(s.kkt, 2e-9);
         EXPECT_LE(kkt_from_statement(p, s), 5e-6);
-        EXPECT_LE(s.newton_steps, 40);  // more: the predictor-corrector came to a halt
+        // more steps mean that the predictor-corrector method stagnated
+        EXPECT_LE(s.newton_steps, 40);
       }
     }
   }
 }
 
-// Min-max over 40 functions (a = 1): z is the largest of them and the multipliers share a0 = 1.
+// Min-max over 40 functions (a = 1): z is the largest of them, and the multipliers sum up to a0 =
+// 1.
 TEST(MmaSubproblem, MinMaxOfManyFunctions) {
   MmaSubproblem p = random_subproblem(30, 40, 6);
   p.p0.setConstant(1e-6);
@@ -150,8 +155,9 @@ TEST(MmaSubproblem, MinMaxOfManyFunctions) {
   EXPECT_LE(kkt_from_statement(p, s), 5e-6);
 }
 
-// Three constraints are solved along the barrier. The same ones, each of them several times and
-// among others that are far away, by the predictor-corrector: same x, multipliers shared.
+// Three constraints are solved by the barrier method. Copies of them among many inactive
+// constraints are solved by the predictor-corrector method: x must be equal, and multipliers are
+// distributed over the copies.
 TEST(MmaSubproblem, ManyConstraintsAgreeWithTheFewThatMatter) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const MmaSubproblem few = random_subproblem(50, 3, seed);
@@ -169,7 +175,8 @@ TEST(MmaSubproblem, ManyConstraintsAgreeWithTheFewThatMatter) {
     const MmaSolution& a = solver_few.solve(few);
     const MmaSolution& b = solver_many.solve(many);
     EXPECT_TRUE(a.solved && b.solved);
-    // Both keep a distance of 1e-9 over the slope from bounds; the flattest slopes are 1e-4.
+    // Both keep a distance of 1e-9 divided by the derivative from bounds; the smallest derivatives
+    // are 1e-4.
     EXPECT_NEAR(objective(few, a.x), objective(few, b.x), 1e-7);
     EXPECT_LE((a.x - b.x).lpNorm<Eigen::Infinity>(), 2e-5) << seed;
     VectorXd shared = VectorXd::Zero(3);
@@ -181,12 +188,13 @@ TEST(MmaSubproblem, ManyConstraintsAgreeWithTheFewThatMatter) {
 TEST(MmaSubproblem, RepeatsBitForBit) {
   const MmaSubproblem p = worst_case(112, 101, 3), other = random_subproblem(112, 101, 4);
   MmaSolver first(112, 101), second(112, 101);
-  second.solve(other);  // nothing is left of what a solver did before
+  second.solve(other);  // a solver keeps nothing of its previous problem
   const VectorXd x = first.solve(p).x;
   EXPECT_EQ(x, second.solve(p).x);
 }
 
-// Two variables, one constraint: the best of a grid, refined about its best point.
+// Two variables and one constraint. Reference: the best point of a grid that is refined about its
+// best point.
 TEST(MmaSubproblem, AgreesWithBruteForce) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const MmaSubproblem p = random_subproblem(2, 1, seed);
@@ -211,14 +219,14 @@ TEST(MmaSubproblem, AgreesWithBruteForce) {
     MmaSolver solver(2, 1);
     const MmaSolution& s = solver.solve(p);
     const double f = objective(p, s.x) + p.c[0] * s.y[0] + 0.5 * p.d[0] * s.y[0] * s.y[0];
-    // The grid ends at 5e-9 and pays c = 1000 for what it oversteps; slopes are about 1.
+    // The last grid has a spacing of 5e-9; violations cost c = 1000, and derivatives are about 1.
     EXPECT_NEAR(f, best, 1e-6) << seed;
     EXPECT_LE(f, best + 1e-7) << seed;
   }
 }
 
-// A constraint beyond reach: y takes what is missing at the price λ = c + d y, x goes as far as
-// it can.
+// A constraint that cannot be satisfied: y is the remaining violation, λ = c + d y, and x goes to
+// its bounds.
 TEST(MmaSubproblem, UnreachableConstraintsAreBought) {
   MmaSubproblem p = random_subproblem(20, 1, 3);
   p.b[0] -= 10;
@@ -230,7 +238,7 @@ TEST(MmaSubproblem, UnreachableConstraintsAreBought) {
   EXPECT_NEAR(constraint_values(p, s.x)[0], s.y[0], 1e-8);
 }
 
-// A hundred of them, by the predictor-corrector: all ask for more than there is.
+// A hundred constraints that cannot be satisfied, solved by the predictor-corrector method.
 TEST(MmaSubproblem, ManyUnreachableConstraintsAreBought) {
   MmaSubproblem p = random_subproblem(20, 100, 3);
   p.b.array() -= 10;
@@ -247,10 +255,11 @@ TEST(MmaSubproblem, WorksWithoutConstraints) {
   MmaSolver solver(30, 0);
   const MmaSolution& s = solver.solve(p);
   EXPECT_TRUE(s.solved);
-  for (int j = 0; j < 30; ++j) {  // each variable alone: √p0 (x - L) = √q0 (U - x)
+  for (int j = 0; j < 30; ++j) {  // each variable by itself: √p0 (x - L) = √q0 (U - x)
     const double a = std::sqrt(p.p0[j]), b = std::sqrt(p.q0[j]);
     const double x = (a * p.low[j] + b * p.upp[j]) / (a + b);
-    // Distance kept from a bound by the barrier: 1e-9 over the slope there, which is 1e-4 or more.
+    // The barrier keeps a distance of 1e-9 divided by the derivative from a bound; the derivative
+    // there is at least 1e-4.
     EXPECT_NEAR(s.x[j], std::clamp(x, p.alpha[j], p.beta[j]), 1e-5) << j;
   }
 }

@@ -1,6 +1,6 @@
-// Compliance of many equivalent static loads: the motion's own deformation comes back at the
-// unchanged design, every derivative passes Taylor's test, and compressed loads give the same
-// objective and gradient as all of them.
+// Shows that the compliance of many equivalent static loads is correct: the motion's own
+// deformation is recovered at the unchanged design, every derivative passes Taylor's test, and
+// compressed loads give the objective and gradient of all loads.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 
-/// Factors as smooth functions of one parameter s: stiffness from 1e-3 to 1, mass likewise.
+/// Scale factors that are smooth functions of one parameter s.
 struct SmoothDesign {
   VectorXd phase, speed;
 
@@ -31,7 +31,7 @@ struct SmoothDesign {
       speed(c) = 0.5 + uniform(engine);
     }
   }
-  // log10 of the stiffness swings between -3 and 0; the mass between 0.02 and 1.
+  // log10 of the stiffness varies between -3 and 0, the mass between 0.02 and 1.
   VectorXd stiffness(double s) const {
     return (1.5 * std::numbers::ln10 * ((phase + s * speed).array().sin() - 1)).exp();
   }
@@ -45,10 +45,10 @@ struct SmoothDesign {
   }
 };
 
-/// The motion of a plate that grows out of a hub turning with omega at speed v, with bending and
-/// axial vibration on top: n times, the root moving from column `last` to `first` in steps of
-/// `step` columns. Deformation is smooth and vanishes on the root line; it is not the static answer
-/// to the accelerations.
+/// Returns n loads of a plate that grows at speed v out of a hub rotating with omega, with
+/// additional bending and axial vibration. The root moves from column `last` to `first` in steps of
+/// `step` columns. The deformation is smooth and vanishes on the root line; it is not the static
+/// solution for the accelerations.
 fem::EslSets growing_plate(const Grid& g, int n, int last, int first, int step = 1) {
   const double omega = 2 * std::numbers::pi, v = 0.5, pi = std::numbers::pi;
   fem::EslSets loads{g, {}};
@@ -109,8 +109,8 @@ class EveryLoadDefinition : public ::testing::TestWithParam<Choice> {
 INSTANTIATE_TEST_SUITE_P(Table, EveryLoadDefinition, ::testing::ValuesIn(choices()),
                          [](const auto& choice) { return choice.param.name; });
 
-// f(s + h) - f(s) - h f'(s) = O(h^2) over three decades. The steps stay above the
-// level where round-off of f (1e-12, conditioning of a plate with 1e-3 in its cells) is felt.
+// f(s + h) - f(s) - h f'(s) = O(h^2) over three decades of h. The steps stay above the level where
+// round-off of f appears (1e-12, because some cells have a stiffness of 1e-3).
 TEST_P(EveryLoadDefinition, TaylorRemainderIsOfSecondOrder) {
   const fem::EslSets loads = growing_plate(kGrid, 6, 12, 2);
   for (bool compress : {false, true}) {
@@ -135,7 +135,7 @@ TEST_P(EveryLoadDefinition, TaylorRemainderIsOfSecondOrder) {
   }
 }
 
-/// Factors between `smallest` and 1, cell by cell.
+/// Returns random scale factors between `smallest` and 1 for all cells.
 VectorXd random_factors(const Grid& g, double smallest, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(std::log(smallest), 0);
@@ -144,7 +144,7 @@ VectorXd random_factors(const Grid& g, double smallest, unsigned seed) {
   return factor;
 }
 
-/// Strain energy of a displacement in the cells inside the hub, and in all cells.
+/// Returns the strain energy of a displacement in the cells inside the hub, and in all cells.
 std::pair<double, double> energy_inside(const fem::StaticSolver& solver, const VectorXd& factor,
                                         const VectorXd& at_nodes, int root_column) {
   const Grid& g = solver.grid();
@@ -162,7 +162,7 @@ std::pair<double, double> energy_inside(const fem::StaticSolver& solver, const V
   return {energies.head(g.cell(root_column, 0)).sum(), energies.sum()};
 }
 
-// Static analysis at the design of the motion returns the motion's deformation.
+// Static analysis at the design of the motion must return the deformation of the motion.
 TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
   const fem::EslSets loads = growing_plate(kGrid, 4, 12, 2);
   for (double smallest : {1e-3, 1e-6}) {
@@ -182,8 +182,8 @@ TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
   }
 }
 
-// With the reactions on the root line among the loads, the plate held at its far end does what the
-// plate held at its root does, and its part inside the hub carries nothing.
+// If the reactions on the root line are part of the loads, the plate held at its far end has the
+// displacement of the plate held at its root, and its part inside the hub is free of strain.
 TEST(Recovery, FrozenLoadsAgreeBetweenSupports) {
   const fem::EslSets loads = growing_plate(kGrid, 4, 12, 2);
   const VectorXd stiffness = random_factors(kGrid, 1e-6, 6), mass = random_factors(kGrid, 1e-2, 7);
@@ -203,7 +203,7 @@ TEST(Recovery, FrozenLoadsAgreeBetweenSupports) {
   }
 }
 
-// Frozen loads at their own design are inertia loads there; a design that follows differs.
+// Frozen loads at their own design equal inertia loads; only the latter depend on its mass.
 TEST(Compliance, FrozenEqualsInertiaAtTheStart) {
   const fem::EslSets loads = growing_plate(kGrid, 5, 12, 2);
   const SmoothDesign design(kGrid, 4);
@@ -219,7 +219,7 @@ TEST(Compliance, FrozenEqualsInertiaAtTheStart) {
   EXPECT_GT(a.d_mass.cwiseAbs().maxCoeff(), 0);
 }
 
-// One cell column, uniform acceleration along x and rigid cells across: the load of a rod.
+// One column of cells under a uniform acceleration along x. Reference: a rod under its own weight.
 TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
   const Grid g{0, 0, 1.0, 0.01, 200, 1};
   fem::PlaneSection section = kSection;
@@ -227,12 +227,12 @@ TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
   fem::EslSets loads{g, {{}}};
   loads.sets[0].acceleration = VectorXd::Zero(2 * g.n_nodes());
   for (int n = 0; n < g.n_nodes(); ++n) loads.sets[0].acceleration(2 * n) = -9.81;
-  loads.sets[0].root_column = 80;  // 0.6 m are outside
+  loads.sets[0].root_column = 80;  // 0.6 m are outside of the hub
   ComplianceEvaluator compliance(loads, section, {}, {}, {});
   const VectorXd ones = VectorXd::Ones(g.n_cells());
   ComplianceEvaluator::Value value;
   compliance.evaluate(ones, ones, value);
-  // f = q^2 L^3 / (3 E A) for q per length; linear elements: 1 - 1/(4 n^2) of it
+  // f = q^2 L^3 / (3 E A) for q per length; linear elements give 1 - 1/(4 n^2) of this value
   const double A = 1e-4, q = 9.81 * 2700 * A, L = 0.6;
   EXPECT_NEAR(value.f, q * q * L * L * L / (3 * 1e8 * A), 1e-4 * value.f);
   EXPECT_NEAR(compliance.individual(ones, ones)(0), value.f, 1e-11 * value.f);
@@ -241,7 +241,7 @@ TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
   EXPECT_NEAR(value.d_mass.sum(), 2 * value.f, 1e-11 * value.f);    // f ~ m^2
 }
 
-// Objective and gradient with and without compression, for all definitions.
+// Compression changes neither objective nor gradient, for all load definitions.
 TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 1);
   const SmoothDesign start(kGrid, 20);
@@ -249,12 +249,12 @@ TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
   ComplianceEvaluator few(loads, kSection, settings(true), start.stiffness(0), start.mass(0));
   EXPECT_EQ(all.n_right_hand_sides(), 40);
   if (GetParam().loads == LoadDefinition::inertia) {
-    // x, y of the rotation, Coriolis and root speed, three modes, and the tip's own slots
+    // x, y of the rotation, Coriolis and root speed, three modes, components of the tip force
     EXPECT_LE(few.n_right_hand_sides(), 8);
   }
   for (unsigned seed : {1u, 2u}) {
     const SmoothDesign design(kGrid, seed);
-    // Solid and void as in a final design: the mass of the void is none.
+    // Solid and void as in a final design: the void has no mass.
     VectorXd k = design.stiffness(0), m = design.mass(0);
     if (seed == 2u) {
       for (int c = 0; c < kGrid.n_cells(); ++c) {
@@ -280,8 +280,8 @@ TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
   }
 }
 
-// The far end is one support for all, but every place of the root line brings reactions of its own:
-// few places, few right-hand sides.
+// The far end is one support for all loads, but each location of the root line has its own
+// reactions. Few locations need few right-hand sides.
 TEST(Compression, FarEndWithFewRootColumns) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 0, 10);
   const SmoothDesign start(kGrid, 20), design(kGrid, 1);
@@ -299,7 +299,7 @@ TEST(Compression, FarEndWithFewRootColumns) {
   }
 }
 
-// A root that does not move is one support too; loads may have no weight, and come in any order.
+// A root that does not move is a single support. Loads may have zero weight and any order.
 TEST(Compression, OneRootColumnNeedsFewSolves) {
   fem::EslSets loads = growing_plate(kGrid, 30, 4, 4);
   loads.sets[7].weight = 0;
@@ -316,7 +316,7 @@ TEST(Compression, OneRootColumnNeedsFewSolves) {
   EXPECT_LT((a.d_mass - b.d_mass).norm(), 1e-8 * a.d_mass.norm());
 }
 
-// More loads than unknowns: a strip of two cells.
+// A strip of two cells with more loads than unknowns.
 TEST(Compression, ATinyPlate) {
   const Grid g{0, 0, 0.2, 0.1, 2, 1};
   const fem::EslSets loads = growing_plate(g, 12, 1, 0);
@@ -367,7 +367,7 @@ TEST(Compliance, RefusesWithTheReason) {
   };
   const ComplianceSettings far_inertia{LoadDefinition::inertia, Support::far_end, true, 1e-10};
   EXPECT_NE(message(good, far_inertia, ones).find("reaction"), std::string::npos);
-  EXPECT_NE(message({kGrid, {}}, {}, ones).find("none"), std::string::npos);
+  EXPECT_NE(message({kGrid, {}}, {}, ones).find("there are no loads"), std::string::npos);
   EXPECT_EQ(message(good, {}, ones), "");
   fem::EslSets bad = good;
   bad.sets[1].root_column = kGrid.nx;

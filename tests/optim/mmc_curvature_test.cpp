@@ -1,6 +1,6 @@
-// Second derivatives of design problems of plates at rest: the sum and the worst of two loads, as
-// objective and as limit, against differences of gradients and by the third order of the Taylor
-// remainder.
+// Shows that the second derivatives of design problems of static plates are correct: the sum and
+// the worst of two loads, as objective and as limit, against differences of gradients and by the
+// third order of the Taylor remainder.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ std::vector<Choice> choices() {
           {"volume_worst", least_volume(10, kComplianceWorst)}};
 }
 
-/// Clamped at the left, two loads at the right.
+/// Returns two loads at the right end of a plate that is clamped at its left end.
 std::unique_ptr<ComplianceEvaluator> loads() {
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= kGrid.ny; ++j)
@@ -53,16 +53,17 @@ class EveryGoal : public ::testing::TestWithParam<Choice> {
   const VectorXd lambda = VectorXd::LinSpaced(problem.n_constraints(), 0.4, 1.3);
 
   VectorXd gradient(const VectorXd& x) {
-    const optim::Response r = problem.evaluate(x);
+    const optim::ProblemValues r = problem.evaluate(x);
     return sigma * r.df + r.dg.transpose() * lambda;
   }
 };
 INSTANTIATE_TEST_SUITE_P(Table, EveryGoal, ::testing::ValuesIn(choices()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// Differences of order four, where those of order two have no step: with 1e-4 cells they are 1e-6
-// to 5e-6 off (and 9 times that with 3e-4), with 1e-5 as much by round-off, 1e-11 of the gradient
-// over the step. Of both orders, h = 1.5e-4 and 3e-4 make one of order four.
+// Differences of order four are used, because no step is suitable for order two: with 1e-4 cells
+// the error is 1e-6 to 5e-6 (9 times as much with 3e-4), and with 1e-5 cells round-off is as large
+// (1e-11 of the gradient divided by the step). The steps h = 1.5e-4 and 3e-4 are combined to order
+// four.
 TEST_P(EveryGoal, MeetsDifferencesOfGradients) {
   const VectorXd x = problem.start(), cells = cells_of(design);
   const MatrixXd hessian = problem.curvature(x, sigma, lambda);
@@ -82,15 +83,15 @@ TEST_P(EveryGoal, MeetsDifferencesOfGradients) {
   }
 }
 
-// f(x + h d) - f - h g·d - h²/2 d·H d falls with h³: the slope of its root mean square over
-// directions, of one alone the third derivative may nearly vanish. h is in cells: at 1e-2 terms of
-// order h⁴ are a few hundredths of a band's width below those of h³, at 1e-3 these are 1e-9/6 of f
-// and round-off is 1e-13 of it.
+// f(x + h d) - f - h g·d - h²/2 d·H d decreases with h³. The order is that of the root mean square
+// over directions, because the third derivative may nearly vanish along a single one. h is in
+// cells: at 1e-2 the terms of order h⁴ are smaller than those of h³ by a few hundredths of the
+// band's width; at 1e-3 the terms of h³ are 1e-9/6 of f, and round-off is 1e-13 of f.
 TEST_P(EveryGoal, LeavesARemainderOfOrderThree) {
   constexpr int kDirections = 16;
   const VectorXd x = problem.start(), cells = cells_of(design);
   const auto value = [&](const VectorXd& at) {
-    const optim::Response r = problem.evaluate(at);
+    const optim::ProblemValues r = problem.evaluate(at);
     return sigma * r.f + lambda.dot(r.g);
   };
   const double f = value(x);

@@ -1,4 +1,4 @@
-// Cycles of loads and designs: when they end, and which one is delivered.
+// Shows when cycles of loads and designs end, and which design is delivered.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,21 +8,22 @@
 namespace flexmorph::mmc::test {
 namespace {
 
-/// Loads of a motion whose strain energies are the static energies of a design, so that nothing of
-/// them is geometry. Loads of every second call bend the plate three times as much.
+/// Returns loads of a motion whose strain energies are the static energies of a design, so that
+/// there is no geometric difference. The loads of every second call have three times the bending
+/// acceleration.
 CycleMotion alternating(std::vector<BodyProblem>& problems, int call, double measure) {
   CycleMotion out{{turning_plate(2, call % 2 == 0 ? 1 : 3)}, measure};
-  const CellFactors sharp =
-      ersatz_of(problems[0]).sharp(fractions_of(problems[0], problems[0].design.components()));
-  const VectorXd each = ComplianceEvaluator(out.loads[0], kSection, {}, sharp.stiffness, sharp.mass)
-                            .individual(sharp.stiffness, sharp.mass);
+  const CellScaleFactors crisp =
+      ersatz_of(problems[0]).crisp(fractions_of(problems[0], problems[0].design.components()));
+  const VectorXd each = ComplianceEvaluator(out.loads[0], kSection, {}, crisp.stiffness, crisp.mass)
+                            .individual(crisp.stiffness, crisp.mass);
   for (size_t k = 0; k < out.loads[0].sets.size(); ++k)
     out.loads[0].sets[k].strain_energy = 0.5 * each[static_cast<Eigen::Index>(k)];
   return out;
 }
 
-// From the third motion on the loads no longer change: the second cycle was made for those of its
-// own motion, and no third one follows.
+// From the third motion on the loads do not change: the second cycle was made for the loads of its
+// own motion, therefore no third cycle follows.
 TEST(EslLoop, EndsWhenTheLoadsAreThoseOfTheMotion) {
   std::vector<BodyProblem> problems = one_body({1.5});
   problems[0].goal.limits[0].value = 0.9;  // of the volume: stiffer than uniform material
@@ -30,7 +31,7 @@ TEST(EslLoop, EndsWhenTheLoadsAreThoseOfTheMotion) {
   settings.max_cycles = 12;
   settings.tolerance = 0;
   int calls = 0;
-  const auto simulate = [&](std::span<const fem::Factors>) {
+  const auto simulate = [&](std::span<const fem::ScaleFactors>) {
     const int call = calls++;
     return alternating(problems, call == 0 ? 0 : 1, 1.0 / calls);
   };
@@ -50,22 +51,23 @@ TEST(EslLoop, EndsWhenTheLoadsAreThoseOfTheMotion) {
   EXPECT_NEAR(differences[1], 0, 1e-9);
 }
 
-// The loads are those of the motion from the first cycle on, but cycles of three iterations make
-// designs that are more compliant than uniform material at first: cycles go on until one is not.
+// The loads are those of the motion from the first cycle on, but cycles of three iterations first
+// give designs that are more compliant than uniform material. Cycles continue until a design is
+// stiffer.
 TEST(EslLoop, GoesOnWhileTheDesignIsOfNoUse) {
   std::vector<BodyProblem> problems = one_body({1.5});
-  problems[0].goal.limits[0].value = 0.9;  // of the volume: enough to join load and support soon
+  problems[0].goal.limits[0].value = 0.9;  // of the volume: enough to connect load and support soon
   LoopSettings settings = quick(3);
   settings.max_cycles = 40;
   settings.tolerance = 0;
   int calls = 0;
-  const auto simulate = [&](std::span<const fem::Factors>) {
+  const auto simulate = [&](std::span<const fem::ScaleFactors>) {
     return alternating(problems, 0, 1.0 / ++calls);
   };
   std::vector<bool> worse;
   LoopObserver observer;
   observer.cycle = [&](int, std::span<const BodyOutcome> outcomes) {
-    worse.push_back(outcomes[0].sharp.compliance > outcomes[0].uniform_compliance);
+    worse.push_back(outcomes[0].crisp.compliance > outcomes[0].uniform_compliance);
   };
   observer.difference = [&](int, std::span<const LoadDifference> all) {
     EXPECT_LT(all[0].loads, LoadDifference::kLargest);
@@ -77,22 +79,23 @@ TEST(EslLoop, GoesOnWhileTheDesignIsOfNoUse) {
   EXPECT_FALSE(worse.back());
 }
 
-// The motion after cycle 3 is worse than the one after cycle 2: loads that still differ make no
-// fourth one. Where a cycle improves the measure by less than the tolerance it is the last one.
+// With tolerance 0, the motion after cycle 3 is worse than that after cycle 2, and no fourth cycle
+// follows although the loads still differ. With tolerance 0.5, the cycle that improves the measure
+// by less than the tolerance is the last one.
 TEST(EslLoop, EndsWhenACycleDoesNotPay) {
   for (const double tolerance : {0.0, 0.5}) {
     std::vector<BodyProblem> problems = one_body({1.5});
     LoopSettings settings = quick(5);
     settings.max_cycles = 12;
     settings.tolerance = tolerance;
-    std::vector<double> sharp;
+    std::vector<double> crisp;
     LoopObserver observer;
     observer.cycle = [&](int, std::span<const BodyOutcome> outcomes) {
-      sharp.push_back(outcomes[0].sharp.compliance);
+      crisp.push_back(outcomes[0].crisp.compliance);
     };
     const double measure[] = {9, 3, 2, 2.5};
     int calls = 0;
-    const auto simulate = [&](std::span<const fem::Factors>) {
+    const auto simulate = [&](std::span<const fem::ScaleFactors>) {
       const int call = calls++;
       return alternating(problems, call, measure[call]);
     };
@@ -103,34 +106,36 @@ TEST(EslLoop, EndsWhenACycleDoesNotPay) {
     const auto outcome = esl_loop(problems, simulate, settings, observer);
     const size_t cycles = tolerance == 0 ? 3 : 2;
     EXPECT_EQ(calls, static_cast<int>(cycles) + 1);
-    ASSERT_EQ(sharp.size(), cycles);
+    ASSERT_EQ(crisp.size(), cycles);
     ASSERT_EQ(verdicts.size(), cycles);
     for (const CycleVerdict& v : verdicts) {
       EXPECT_EQ(v.best, v.cycle == 2);
       EXPECT_EQ(v.measure, measure[v.cycle]);
     }
-    EXPECT_EQ(outcome[0].sharp.compliance, sharp[1]);
+    EXPECT_EQ(outcome[0].crisp.compliance, crisp[1]);
     if (cycles == 3) {
-      EXPECT_NE(sharp[1], sharp[2]);
+      EXPECT_NE(crisp[1], crisp[2]);
     }
   }
 }
 
-// A design beyond its limit is worse than any that keeps to it, whatever its motion.
+// A design that violates its limit is worse than any design that satisfies it, whatever its motion.
 TEST(EslLoop, DeliversTheBestUsableCycle) {
   std::vector<BodyProblem> problems = one_body({1.5});
-  problems[0].places = ends_of(kGrid);  // of a support only: islands are no matter here
-  problems[0].places.pop_back();
+  // only a support, therefore separate regions do not matter
+  problems[0].locations = ends_of(kGrid);
+  problems[0].locations.pop_back();
   LoopSettings settings = quick(5);
   settings.max_cycles = 3;
   settings.tolerance = 0;
   LoopObserver observer;
-  // What the first cycle made may use the whole plate; what the second made is ten times too much.
+  // The first cycle may use the whole plate; the design of the second cycle exceeds its limit
+  // tenfold.
   observer.cycle = [&](int cycle, std::span<const BodyOutcome>) {
     for (Limit& limit : problems[0].goal.limits) limit.value = cycle == 1 ? 1 : 0.05;
   };
   int calls = 0;
-  const auto simulate = [&](std::span<const fem::Factors>) {
+  const auto simulate = [&](std::span<const fem::ScaleFactors>) {
     const int call = calls++;
     return alternating(problems, call, 1.0 / calls);
   };
@@ -146,8 +151,8 @@ TEST(EslLoop, DeliversTheBestUsableCycle) {
   EXPECT_TRUE(verdicts[0].best);
 }
 
-// Where another motion compares cycles, that of the loads has no say, and is not made where nothing
-// follows.
+// If cycles are compared by a verification motion, the measure of the loads' motion is ignored, and
+// the latter is not computed when no further cycle follows.
 TEST(EslLoop, IsVerifiedByAnotherMotion) {
   std::vector<BodyProblem> problems = one_body({1.5});
   LoopSettings settings = quick(5);
@@ -156,23 +161,23 @@ TEST(EslLoop, IsVerifiedByAnotherMotion) {
   const double integral[] = {3, 2, 2.5};
   int calls = 0, verified = 0;
   VectorXd seen;
-  const auto simulate = [&](std::span<const fem::Factors> factors) {
+  const auto simulate = [&](std::span<const fem::ScaleFactors> factors) {
     EXPECT_EQ(calls == 0, verified == 0);
     if (verified > 0) {
       EXPECT_EQ(factors[0].stiffness, seen);
     }
     const int call = calls++;
-    return alternating(problems, call, calls);  // ever worse
+    return alternating(problems, call, calls);  // worse every time
   };
-  settings.verification_motion = [&](std::span<const fem::Factors> factors) {
+  settings.verification_motion = [&](std::span<const fem::ScaleFactors> factors) {
     seen = factors[0].stiffness;
     return integral[verified++];
   };
-  std::vector<double> sharp;
+  std::vector<double> crisp;
   std::vector<CycleVerdict> verdicts;
   LoopObserver observer;
   observer.cycle = [&](int, std::span<const BodyOutcome> outcomes) {
-    sharp.push_back(outcomes[0].sharp.compliance);
+    crisp.push_back(outcomes[0].crisp.compliance);
   };
   observer.verdict = [&](std::span<const CycleVerdict> all) {
     verdicts.assign(all.begin(), all.end());
@@ -185,9 +190,9 @@ TEST(EslLoop, IsVerifiedByAnotherMotion) {
     EXPECT_EQ(verdicts[k].measure, integral[k]);
     EXPECT_EQ(verdicts[k].best, k == 1);
   }
-  EXPECT_EQ(outcome[0].sharp.compliance, sharp[1]);
+  EXPECT_EQ(outcome[0].crisp.compliance, crisp[1]);
 
-  // One cycle is not compared with any other.
+  // A single cycle is not verified, because there is nothing to compare it with.
   settings.max_cycles = 1;
   problems = one_body({1.5});
   verified = calls = 0;

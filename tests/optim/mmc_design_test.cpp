@@ -1,5 +1,6 @@
-// The way from scaled variables to cell factors and back: components survive the round trip, the
-// bounds are those of the design, and both chain rules agree with differences.
+// Shows that the conversions from scaled variables to scale factors of cells and back are correct:
+// components are preserved, bounds are those of the design, and both chain rules agree with
+// differences.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +33,7 @@ TEST(Design, KeepsItsComponents) {
   const std::vector<Component> start = random_layout(1);
   const Design design(kGrid, start, kScale);
   EXPECT_EQ(design.n_variables(), kN * 24);
-  // One product and one quotient per parameter.
+  // Each parameter is subject to one product and one quotient.
   const VectorXd p = parameters_of(start);
   EXPECT_LT((parameters_of(design.components()) - p).cwiseAbs().maxCoeff(), 1e-15);
   std::vector<Component> out;
@@ -42,7 +43,7 @@ TEST(Design, KeepsItsComponents) {
 
 TEST(Design, IsMeasuredInComponentSizes) {
   const Design design(kGrid, layout(), kScale);
-  // A step of one in a variable: a component's length 2 L, half a turn, half a length.
+  // A variable changed by one means: a component's length 2 L, half a turn, half a length.
   const double size = 2 * kScale.half_length, pi = std::numbers::pi;
   const double units[kN] = {size, size, size, pi, size / 2, size / 2, size / 2};
   const VectorXd before = parameters_of(design.components());
@@ -62,7 +63,7 @@ TEST(Design, BoundsAreThoseOfTheDomain) {
   std::vector<Component> start = layout();
   start[0].c1 = 1e-5;             // below c_min
   start[1].center = Vec2(-1, 2);  // outside the domain
-  start[2].half_length = 10;      // longer than anything
+  start[2].half_length = 10;      // longer than the upper bound
   const Design design(kGrid, start, kScale);
   EXPECT_TRUE((design.lower().array() < design.upper().array()).all());
   EXPECT_TRUE((design.x().array() >= design.lower().array()).all());
@@ -87,7 +88,8 @@ TEST(Design, BoundsAreThoseOfTheDomain) {
   EXPECT_NEAR((kept[1].center - Vec2(0, 0.05)).norm(), 0, 1e-15);
 }
 
-// A thickness bound far above the length of the first components leaves room all the same.
+// A bound of the thickness far above the length of the first components still leaves a valid
+// interval.
 TEST(Design, BoundsDoNotCrossWhateverTheScale) {
   const DesignScale stubby{.half_length = 1e-4, .min_thickness = 0.005, .max_thickness = 0.03};
   const Design design(kGrid, layout(), stubby);
@@ -98,7 +100,7 @@ TEST(Design, ScalesGradients) {
   const Design design(kGrid, random_layout(2), kScale);
   const VectorXd weight = random_vector(design.n_variables(), -1, 1, 3);
   const VectorXd along = random_vector(design.n_variables(), -1, 1, 4);
-  // f = Σ w_i sin p_i of the parameters
+  // f = Σ w_i sin p_i as a function of the parameters p.
   const auto f = [&](const VectorXd& x) {
     std::vector<Component> components;
     design.components(x, components);
@@ -106,7 +108,8 @@ TEST(Design, ScalesGradients) {
   };
   VectorXd gradient = weight.array() * parameters_of(design.components()).array().cos();
   design.scale_gradient(gradient);
-  // Fourth order: 1e-3^4 of the fifth derivative, and 1e-16 / 1e-3 of round-off.
+  // The difference is of fourth order: its errors are 1e-3^4 of the fifth derivative and 1e-16 /
+  // 1e-3 of round-off.
   const double slope =
       testing::first_difference([&](double h) { return f(design.x() + h * along); }, 1e-3);
   EXPECT_NEAR(gradient.dot(along), slope, 1e-11 * gradient.cwiseAbs().sum());
@@ -122,7 +125,7 @@ TEST(Design, MovesToWhereItIsSent) {
   EXPECT_EQ(design.move_to(x), 0);
 }
 
-// Images move with what they are images of; areas are the same on both sides.
+// Image components move together with their originals; the area fractions are symmetric.
 TEST(Symmetry, OfDesignsIsKeptByTheirVariables) {
   const double y = kGrid.y0 + 0.5 * kGrid.height, x = kGrid.x0 + 0.5 * kGrid.width;
   for (const Symmetry& symmetry : {Symmetry{{}, y}, Symmetry{x, {}}, Symmetry{x, y}}) {
@@ -144,7 +147,7 @@ TEST(Symmetry, OfDesignsIsKeptByTheirVariables) {
                                          area[kGrid.cell(symmetry.x ? kGrid.nx - 1 - i : i,
                                                          symmetry.y ? kGrid.ny - 1 - j : j)]));
     EXPECT_LT(apart, 0.05);  // samples on outlines
-    // with() may take an image for what it is one of.
+    // with() may exchange an image and its original.
     const Design again = design.with(design.components());
     EXPECT_EQ(again.n_components(), design.n_components());
     const VectorXd same = area_fractions(kGrid, again.components(), 0.005, {}, {});
@@ -179,11 +182,12 @@ VectorXd at_nodes(double value) { return VectorXd::Constant(kGrid.n_nodes(), val
 
 const std::vector<std::vector<Vec2>> kEmpty = {corners_of({{0.1, -0.02}, {0.2, 0.02}})};
 
-// Stiffness is the square of the eroded density, mass the density above that of the void.
+// The stiffness is the square of the eroded density; the mass is the density above that of the
+// void.
 TEST(Ersatz, OfConstantDensityIsItsPower) {
   const double alpha = 1e-2;
   const Ersatz ersatz(kGrid, alpha, {}, {});
-  CellFactors factors;
+  CellScaleFactors factors;
   for (const double h : {alpha, 0.25, 0.5, 1.0}) {
     for (const double eroded : {alpha, 0.3, 1.0}) {
       ersatz.factors(at_nodes(h), at_nodes(eroded), factors);
@@ -199,7 +203,7 @@ TEST(Ersatz, PassiveRegionsAreWhatTheySay) {
   const double alpha = 1e-2;
   const std::vector<std::vector<Vec2>> solid = strip();
   const Ersatz ersatz(kGrid, alpha, solid, kEmpty);
-  CellFactors factors;
+  CellScaleFactors factors;
   ersatz.factors(at_nodes(0.3), at_nodes(0.3), factors);
   int n_solid = 0, n_empty = 0;
   for (int i = 0; i < kGrid.nx; ++i) {
@@ -219,7 +223,7 @@ TEST(Ersatz, PassiveRegionsAreWhatTheySay) {
   EXPECT_EQ(n_solid, 2 * 10);
   EXPECT_EQ(n_empty, 10 * 4);
 
-  // Where both lie, there is material.
+  // Where solid and void regions overlap, there is material.
   const Ersatz both(kGrid, alpha, solid, solid);
   both.factors(at_nodes(0.3), at_nodes(0.3), factors);
   EXPECT_EQ(factors.mass[kGrid.cell(59, 4)], 1);
@@ -237,8 +241,9 @@ TEST(Ersatz, PullBackAgreesWithDifferences) {
     const VectorXd by_mass = random_vector(kGrid.n_cells(), -1, 1, seed + 30);
     VectorXd d_h, d_eroded;
     ersatz.pull_back(eroded, by_stiffness, by_mass, d_h, d_eroded);
-    CellFactors factors;
-    // The factors are of second degree in both densities, where this quotient is exact.
+    CellScaleFactors factors;
+    // The scale factors are quadratic in both densities, therefore the difference quotient is
+    // exact.
     const double slope = testing::first_difference(
         [&](double t) {
           ersatz.factors(h + t * along, eroded + t * eroded_along, factors);
@@ -255,21 +260,21 @@ TEST(Ersatz, SharpPicturesBlendBetweenVoidAndMaterial) {
   const double alpha = 1e-2;
   const Ersatz ersatz(kGrid, alpha, {}, {});
   const VectorXd fractions = random_vector(kGrid.n_cells(), 0, 1, 5);
-  const CellFactors sharp = ersatz.sharp(fractions);
-  EXPECT_EQ(sharp.mass, fractions);
-  const CellFactors dynamic = Ersatz::dynamic(fractions, 1e-4, 1e-3);
+  const CellScaleFactors crisp = ersatz.crisp(fractions);
+  EXPECT_EQ(crisp.mass, fractions);
+  const CellScaleFactors dynamic = Ersatz::dynamic(fractions, 1e-4, 1e-3);
   for (int c = 0; c < kGrid.n_cells(); ++c) {
     const double f = fractions[c];
-    EXPECT_NEAR(sharp.stiffness[c], f + (1 - f) * alpha * alpha, 1e-15);
+    EXPECT_NEAR(crisp.stiffness[c], f + (1 - f) * alpha * alpha, 1e-15);
     EXPECT_NEAR(dynamic.stiffness[c], f + (1 - f) * 1e-4, 1e-15);
     EXPECT_NEAR(dynamic.mass[c], f + (1 - f) * 1e-3, 1e-15);
   }
-  // At the ends blurred and sharp agree: void is void, material is material.
-  CellFactors blurred;
-  ersatz.factors(at_nodes(alpha), at_nodes(alpha), blurred);
-  const CellFactors empty = ersatz.sharp(VectorXd::Zero(kGrid.n_cells()));
-  EXPECT_NEAR((blurred.stiffness - empty.stiffness).norm(), 0, 1e-15);
-  EXPECT_NEAR((blurred.mass - empty.mass).norm(), 0, 1e-15);
+  // For pure void and pure material the smoothed and crisp factors agree.
+  CellScaleFactors smoothed;
+  ersatz.factors(at_nodes(alpha), at_nodes(alpha), smoothed);
+  const CellScaleFactors empty = ersatz.crisp(VectorXd::Zero(kGrid.n_cells()));
+  EXPECT_NEAR((smoothed.stiffness - empty.stiffness).norm(), 0, 1e-15);
+  EXPECT_NEAR((smoothed.mass - empty.mass).norm(), 0, 1e-15);
 }
 
 }  // namespace

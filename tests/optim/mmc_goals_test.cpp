@@ -1,6 +1,6 @@
-// Design problems over loads at rest, and what they may ask for: sums and worst cases of many
-// loads, volume under compliance. Derivatives against differences; a worst case against its
-// definition; compression and the sum over loads against each other.
+// Shows that design problems with static loads are correct: sums and worst cases of many loads,
+// volume under a compliance limit. Derivatives are compared with differences, the worst case with
+// its definition, and compressed loads with the sum over all loads.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,7 @@ std::vector<fem::HeldUnknown> clamp() {
   return held;
 }
 
-/// n loads that pull at the free end and at the middle, in two directions: three of them are
-/// independent.
+/// Returns n loads that pull at the free end and at the middle; three of them are independent.
 std::vector<LoadCase> loads(int n) {
   std::vector<LoadCase> all;
   const int tip = kGrid.node(kGrid.nx, kGrid.ny / 2), middle = kGrid.node(kGrid.nx / 2, kGrid.ny);
@@ -59,7 +58,7 @@ TEST(ComplianceEvaluator, DerivativesAgreeWithDifferences) {
     down[cell] -= h;
     plate4.evaluate(up, mass, plus);
     plate4.evaluate(down, mass, minus);
-    // Central differences: error h² f'''/6, f''' ~ f/b³.
+    // Central differences have an error of h² f'''/6, f''' ~ f/b³.
     EXPECT_NEAR(value.d_stiffness[cell], (plus.f - minus.f) / (2 * h),
                 1e-6 * std::abs(value.d_stiffness[cell]) + 1e-9 * value.f);
     plate4.evaluate_each(up, mass, each_plus);
@@ -91,7 +90,8 @@ TEST(ComplianceEvaluator, TheSumIsThatOfItsLoadsWithOrWithoutCompression) {
   EXPECT_NEAR(c.f, sum, 1e-9 * sum);
   EXPECT_LT((a.d_stiffness - gradient).norm(), 1e-11 * gradient.norm());
   EXPECT_LT((c.d_stiffness - gradient).norm(), 1e-8 * gradient.norm());
-  // Two substitutions of a stiffness of condition about 1e6.
+  // The difference is due to two substitutions with a stiffness matrix of condition number about
+  // 1e6.
   EXPECT_LT((few.individual(b, b) - each.f).norm(), 1e-9 * each.f.norm());
 }
 
@@ -115,7 +115,8 @@ TEST(ComplianceEvaluator, RefusesLoadsThatDoNothing) {
   EXPECT_THROW(ComplianceEvaluator({kGrid, kSection, {}}, clamp(), {}, false), Error);
 }
 
-// Loads that follow the design and a moving root, one by one against their sum and differences.
+// Loads that depend on the design, with a moving root: individual values against their sum and
+// against differences.
 TEST(Compliance, EveryLoadByItself) {
   const fem::EslSets sets = turning_plate(4);
   ComplianceEvaluator compliance(sets, kSection, {}, {}, {});
@@ -132,7 +133,7 @@ TEST(Compliance, EveryLoadByItself) {
     by_k += w * each.d_stiffness.row(l);
     by_m += w * each.d_mass.row(l);
   }
-  EXPECT_NEAR(value.f, sum, 1e-8 * sum);  // evaluate() compresses
+  EXPECT_NEAR(value.f, sum, 1e-8 * sum);  // evaluate() uses compressed loads
   EXPECT_LT((value.d_stiffness - by_k).norm(), 1e-7 * by_k.norm());
   EXPECT_LT((value.d_mass - by_m).norm(), 1e-7 * by_m.norm());
   EXPECT_LT((compliance.individual(k, m) - each.f).norm(), 1e-10 * each.f.norm());
@@ -160,8 +161,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Asked{"volume_worst", least_volume(2, kComplianceWorst)}),
     [](const auto& test) { return std::string(test.param.name); });
 
-// Every row of the response against central differences along a random direction of a hundredth of
-// a cell: what the blurred band leaves of order three is far below the slope.
+// Every row of the response is compared with central differences along a random direction of a
+// hundredth of a cell; the terms of third order from the smoothed band are far below the
+// derivative.
 TEST_P(EveryGoal, GradientsAgreeWithDifferences) {
   const Design design(kGrid, random_layout(3), kScale);
   const Ersatz ersatz(kGrid, tdf_settings().alpha, strip(), {});
@@ -176,9 +178,10 @@ TEST_P(EveryGoal, GradientsAgreeWithDifferences) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   VectorXd along(x.size());
   for (double& each : along) each = 1e-5 * uniform(engine);
-  const optim::Response at = problem.evaluate(x);
+  const optim::ProblemValues at = problem.evaluate(x);
   ASSERT_EQ(at.g.size(), problem.n_constraints());
-  const optim::Response plus = problem.evaluate(x + along), minus = problem.evaluate(x - along);
+  const optim::ProblemValues plus = problem.evaluate(x + along),
+                             minus = problem.evaluate(x - along);
   EXPECT_NEAR(at.df.dot(along), (plus.f - minus.f) / 2, 1e-4 * std::abs(at.df.dot(along)) + 1e-11);
   for (Eigen::Index i = 0; i < at.g.size(); ++i) {
     const double slope = at.dg.row(i).dot(along);
@@ -192,7 +195,7 @@ TEST(WorstCase, BoundsEveryLoadAndStartsAtTheLargest) {
   ComplianceEvaluator statics = plate(5, false);
   MmcProblem problem({kPlate, design, ersatz, statics}, tdf_settings(),
                      least_compliance(0.5, kComplianceWorst));
-  const optim::Response r = problem.evaluate(problem.start());
+  const optim::ProblemValues r = problem.evaluate(problem.start());
   const VectorXd C = *problem.values(kComplianceWorst);
   EXPECT_NEAR(r.f, std::log(C.maxCoeff()), 1e-12);
   EXPECT_EQ(problem.compliance(), C.maxCoeff());
@@ -202,11 +205,10 @@ TEST(WorstCase, BoundsEveryLoadAndStartsAtTheLargest) {
 
 struct Designed {
   BodyOutcome outcome;
-  double worst;  ///< largest compliance of the blurred design
+  double worst;  ///< Largest compliance of the smoothed design.
 };
 
-/// The design of a small plate for a goal. (Ten cells across: only blurred pictures mean
-/// something.)
+/// Designs a small plate for a goal. (With ten cells across, only smoothed designs are meaningful.)
 Designed designed(const Goal& goal, int n_loads, int iterations) {
   TdfSettings tdf = tdf_settings();
   tdf.erosion = 0;
@@ -214,15 +216,16 @@ Designed designed(const Goal& goal, int n_loads, int iterations) {
   ComplianceEvaluator statics = plate(n_loads, !compliance_row(goal).per_load);
   DesignSettings settings;
   settings.optimizer.max_iterations = iterations;
-  bool going = true;
-  const BodyOutcome outcome = design_body(problem, statics, 1, settings, {}, going);
+  bool is_running = true;
+  const BodyOutcome outcome = design_body(problem, statics, 1, settings, {}, is_running);
   const Ersatz ersatz = ersatz_of(problem);
   MmcProblem all({kPlate, problem.design, ersatz, statics}, tdf,
                  least_compliance(0.5, kComplianceWorst));
   return {outcome, std::exp(all.evaluate(all.start()).f)};
 }
 
-// A worst case evens out what a sum leaves uneven: its largest compliance is lower.
+// The worst case distributes compliance evenly over the loads: its largest compliance is lower than
+// that of the design for the sum.
 TEST(WorstCase, HasALowerWorstLoadThanTheSum) {
   const Designed sum = designed(least_compliance(), 5, 150);
   const Designed worst = designed(least_compliance(0.5, kComplianceWorst), 5, 150);

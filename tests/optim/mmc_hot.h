@@ -12,7 +12,7 @@
 /// Hot plates for tests.
 namespace flexmorph::mmc::test {
 
-/// Between `smallest` and 1, evenly in their logarithm.
+/// Returns random factors between `smallest` and 1, uniformly distributed in their logarithm.
 inline VectorXd random_factors(const Grid& g, double smallest, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(std::log(smallest), 0);
@@ -21,9 +21,9 @@ inline VectorXd random_factors(const Grid& g, double smallest, unsigned seed) {
   return factor;
 }
 
-/// turning_plate() hot, each load by another stretch of up to `a`, and slowed down until held
-/// growth costs about what its loads do; the edge in the hub takes part in none of the growth, or
-/// all.
+/// Returns turning_plate() with temperatures: each load has another thermal stretch of up to `a`.
+/// Accelerations and forces are reduced until the held expansion has about the energy of the loads.
+/// The edge in the hub is held completely, or expands freely if `edge_grows`.
 inline fem::EslSets hot_plate(int n, double a, bool edge_grows = false) {
   fem::EslSets loads = turning_plate(n);
   for (int l = 0; l < n; ++l) {
@@ -36,10 +36,10 @@ inline fem::EslSets hot_plate(int n, double a, bool edge_grows = false) {
   return loads;
 }
 
-/// Steel at 300 K more than in the cold.
+/// Thermal stretch of steel at 300 K above the reference temperature.
 inline constexpr double kStretch = 4e-3;
 
-/// Components of all nodes of column i.
+/// Returns the given components of all nodes of column i.
 inline std::vector<fem::HeldUnknown> edge(int i, std::vector<int> components) {
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= kGrid.ny; ++j)
@@ -53,18 +53,20 @@ inline std::vector<fem::HeldUnknown> operator+(std::vector<fem::HeldUnknown> a,
   return a;
 }
 
-/// One load found in another way: wᵀ K w, its derivative by the stiffness factors, w.
+/// Reference solution of one load: wᵀ K w, its derivative with respect to the stiffness factors,
+/// and w.
 struct Found {
   double compliance = 0;
   VectorXd derivative, w;
 };
 
-/// Relative errors: of a load, of individual() beside it, of the sum and its derivative.
+/// Allowed relative errors: of a load, of individual() compared with it, of the sum and of its
+/// derivative.
 struct Allowed {
   double load, individual, sum, d_sum;
 };
 
-/// All of the displacement: the elastic one and the growth about the root.
+/// Returns the total displacement: the elastic displacement and the expansion about the root.
 inline VectorXd whole(const VectorXd& w, const fem::EslSet& set, const Grid& g) {
   const Vec2 root(g.node_position(set.root_column, 0).x(), 0);
   VectorXd u = w;
@@ -74,7 +76,7 @@ inline VectorXd whole(const VectorXd& w, const fem::EslSet& set, const Grid& g) 
   return u;
 }
 
-/// All answers of Compliance for `inertia` loads against `found(load)`.
+/// Compares all results of Compliance for `inertia` loads with the reference `found(load)`.
 template <class FoundOf>
 void expect_answers(const fem::EslSets& loads, const VectorXd& k, const VectorXd& m, bool compress,
                     const Allowed& allowed, const FoundOf& found) {

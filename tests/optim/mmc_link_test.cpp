@@ -1,6 +1,6 @@
-// Compliance of the equivalent static loads of a link between two pins: derivatives of both
-// supports, whose balance follows the design, pass Taylor's test and agree with differences; a
-// slender link bends like a beam on two supports; loads that balance need no support.
+// Shows that the compliance of equivalent static loads of a link between two pins is correct:
+// derivatives of both supports, whose balance depends on the design, pass Taylor's test and agree
+// with differences; a slender link bends as a beam on two supports; balanced loads need no support.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,10 +16,11 @@ namespace {
 
 const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 const Grid kGrid{0, -0.05, 0.6, 0.1, 36, 6};
-/// Not on a line of the grid.
+/// The line of the pins is oblique to the grid.
 const std::array<int, 2> kPins = {kGrid.node(2, 1), kGrid.node(33, 5)};
 
-/// Factors as smooth functions of one parameter s: stiffness from 1e-3 to 1, mass likewise.
+/// Scale factors as smooth functions of one parameter s: stiffness from 1e-3 to 1, mass from 0.02
+/// to 1.
 struct SmoothDesign {
   VectorXd phase, speed;
 
@@ -44,8 +45,8 @@ struct SmoothDesign {
   }
 };
 
-/// A link that turns and swings n times, with forces at its pins and a mass between them. Nothing
-/// of that balances.
+/// Returns n loads of a link that rotates and swings, with forces at its pins and a mass between
+/// them. These loads are not balanced.
 fem::EslSets swinging_link(int n) {
   fem::EslSets loads{kGrid, {}, kPins};
   for (int k = 0; k < n; ++k) {
@@ -114,7 +115,8 @@ TEST_P(EveryLink, TaylorRemainderIsOfSecondOrder) {
     }
 }
 
-// Cell by cell, of the worst load and of the sum; the parts of all loads make the whole.
+// Compares the derivatives with differences, cell by cell; the weighted sum of all loads is the
+// total.
 TEST_P(EveryLink, GradientsAgreeWithDifferences) {
   const fem::EslSets loads = swinging_link(3);
   const SmoothDesign start(5), design(6);
@@ -126,9 +128,9 @@ TEST_P(EveryLink, GradientsAgreeWithDifferences) {
   ComplianceEvaluator::Each each;
   compliance.evaluate_each(k, m, each);
   const VectorXd one_by_one = compliance.individual(k, m);
-  // Two solutions of one system, whose condition number is about 5 E t / λ / s: E t = 1e6 N/m,
-  // λ = E I (π / L)^4 L / n = 56 N/m (first bending mode between pins: E I = 83 N m^2, L = 0.6 m,
-  // n = 671 nodes), s = 10^-1.5 the geometric mean of the stiffness scale factors.
+  // The two values are solutions of one system whose condition number is about 5 E t / λ / s: E t =
+  // 1e6 N/m, λ = E I (π / L)^4 L / n = 56 N/m (first bending mode between pins: E I = 83 N m^2, L =
+  // 0.6 m, n = 671 nodes), s = 10^-1.5 is the geometric mean of the stiffness scale factors.
   const double allowed = 5e6 / 56 / 0.03 * std::numeric_limits<double>::epsilon();
   double sum = 0;
   for (Eigen::Index l = 0; l < 3; ++l) {
@@ -138,7 +140,7 @@ TEST_P(EveryLink, GradientsAgreeWithDifferences) {
   EXPECT_NEAR(sum, value.f, 1e-12 * value.f);
   for (const int cell : {0, 77, 111, 215}) {
     for (const bool of_mass : {false, true}) {
-      const double h = 1e-2;  // of fourth order: less would be round-off
+      const double h = 1e-2;  // fourth order; a smaller step would show round-off
       const auto at = [&](double dx) {
         VectorXd moved = of_mass ? m : k;
         moved[cell] *= 1 + dx;
@@ -163,7 +165,7 @@ TEST_P(EveryLink, CompressionChangesNothing) {
   ComplianceEvaluator all(loads, kSection, settings(false), start.stiffness(0), start.mass(0));
   ComplianceEvaluator few(loads, kSection, settings(true), start.stiffness(0), start.mass(0));
   EXPECT_EQ(all.n_right_hand_sides(), 40);
-  // shifts, turn, centrifugal, swing, three forces of two components, of which some are one
+  // shifts, rotation, centrifugal and swing terms, three forces of two components; some coincide
   EXPECT_LE(few.n_right_hand_sides(), 11);
   ComplianceEvaluator::Value a, b;
   all.evaluate(design.stiffness(0), design.mass(0), a);
@@ -173,7 +175,8 @@ TEST_P(EveryLink, CompressionChangesNothing) {
   EXPECT_LE((b.d_mass - a.d_mass).norm(), 1e-6 * a.d_mass.norm());
 }
 
-// Hᵀ u = 0: the line of the pins stays, or mean motions by mass vanish, also the turning one.
+// Hᵀ u = 0: with `pins` the line of the pins does not move across itself; with `floating` the mean
+// translation and rotation, weighted by mass, vanish.
 TEST_P(EveryLink, DisplacementsAreThoseOfTheSupport) {
   const SmoothDesign design(3);
   const VectorXd k = design.stiffness(0), m = design.mass(0);
@@ -189,7 +192,8 @@ TEST_P(EveryLink, DisplacementsAreThoseOfTheSupport) {
     EXPECT_LT(std::abs(u.segment<2>(2 * kPins[1]).dot(Vec2(-line.y(), line.x()))), small);
     return;
   }
-  // By four corners of cells a quarter each: products of linear functions by Simpson's rule.
+  // The mass of a cell is integrated by Simpson's rule, which is exact for products of linear
+  // functions.
   Vec2 linear(0, 0);
   double angular = 0;
   constexpr double kWeights[] = {1, 4, 1};
@@ -217,10 +221,10 @@ struct Slender {
   Grid grid{0, -0.005, 0.4, 0.01, 320, 8};
   fem::PlaneSection section{0.01, 2e9, 0, 1000};
   std::array<int, 2> pins{grid.node(0, 4), grid.node(320, 4)};
-  double q = section.density * section.thickness * grid.height * 50;  // of 50 m/s² [N/m]
+  double q = section.density * section.thickness * grid.height * 50;  // for 50 m/s² [N/m]
   VectorXd ones = VectorXd::Ones(grid.n_cells());
 
-  /// Accelerated across, with what its pins would hold it with.
+  /// Returns a transverse acceleration, optionally with the reactions of the pins as forces.
   fem::EslSets loads(bool with_forces) const {
     fem::EslSets out{grid, {{}}, pins};
     out.sets[0].acceleration = VectorXd::Zero(2 * grid.n_nodes());
@@ -231,8 +235,9 @@ struct Slender {
   }
 };
 
-// C = q² L⁵ / (120 E I) of a beam on two supports. Pins make their reactions themselves; without
-// support the forces of the joints are needed, and without them the link flies unstrained.
+// Reference: C = q² L⁵ / (120 E I) of a beam on two supports. The support `pins` produces the
+// reactions itself. The support `floating` needs the joint forces; without them the link
+// accelerates freely and is not strained.
 TEST(Link, BendsLikeABeamOnTwoSupports) {
   const Slender link;
   const double I = link.section.thickness * std::pow(link.grid.height, 3) / 12;
@@ -243,7 +248,8 @@ TEST(Link, BendsLikeABeamOnTwoSupports) {
                           {LoadDefinition::inertia, support, true, 1e-10}, {}, {});
     return c.individual(link.ones, link.ones)[0];
   };
-  // Bilinear cells are too stiff by about (h / ny)² / h², shear makes it softer by 3 (h / L)².
+  // Bilinear cells are too stiff by about (h / ny)² / h²; shear makes the link softer by 3 (h /
+  // L)².
   EXPECT_NEAR(compliance(Support::pins, false) / beam, 1, 0.02);
   EXPECT_NEAR(compliance(Support::pins, true), compliance(Support::pins, false), 1e-8 * beam);
   EXPECT_NEAR(compliance(Support::floating, true), compliance(Support::pins, true), 1e-8 * beam);

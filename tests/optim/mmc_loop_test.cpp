@@ -1,6 +1,6 @@
-// The cycle dynamics -> loads -> design on a small plate whose "dynamics" is a formula: designs
-// become feasible and stiffer, cycles end when the design rests, an observer can stop them, and
-// the rows of the history describe the iterate they are shown with.
+// Shows that the cycle dynamics -> loads -> design works on a small plate whose "dynamics" is a
+// formula: designs become feasible and stiffer, cycles end when the design stagnates, an observer
+// can stop them, and rows of the history describe their own iterate.
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,11 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
   std::vector<BodyProblem> problems = one_body();
   const VectorXd start = problems[0].design.x();
   int calls = 0;
-  const auto simulate = [&](std::span<const fem::Factors> factors) {
+  const auto simulate = [&](std::span<const fem::ScaleFactors> factors) {
     ++calls;
     EXPECT_EQ(factors.size(), 1u);
     EXPECT_EQ(factors[0].stiffness.size(), kGrid.n_cells());
-    // The void factors of dynamics, not those of statics.
+    // The void factors are those of dynamics, not those of statics.
     EXPECT_NEAR(factors[0].stiffness.minCoeff(), 1e-4, 1e-15);
     EXPECT_NEAR(factors[0].mass.minCoeff(), 1e-3, 1e-15);
     return CycleMotion{{turning_plate(3)}};
@@ -40,8 +40,9 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
   EXPECT_LE(o.volume, 0.5 * (1 + 1e-4));
   EXPECT_LT(o.compliance, 0.9 * first);
   EXPECT_LT(last, first);
-  // Bars beat the same volume spread evenly. (Of blurred ones only: half-thicknesses of 0.6 cells
-  // are nothing a sharp picture on this mesh could show.)
+  // Bars are stiffer than uniformly distributed material of equal volume. (Only smoothed designs
+  // are compared, because half-thicknesses of 0.6 cells cannot be represented by crisp designs on
+  // this mesh.)
   EXPECT_LT(o.compliance, o.uniform_compliance);
   EXPECT_GT((problems[0].design.x() - start).norm(), 0);
   EXPECT_EQ(o.iterations, 60);
@@ -50,13 +51,13 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
   EXPECT_EQ(o.load_compliances.size(), 3u);
   EXPECT_EQ(o.energy_ratios.size(), 3u);
 
-  // The sharp compliance is that of the loads together.
+  // The crisp compliance is the weighted sum over all loads.
   double sum = 0;
   const fem::EslSets loads = turning_plate(3);
   for (size_t l = 0; l < 3; ++l) sum += loads.sets[l].weight * o.load_compliances[l];
-  EXPECT_NEAR(sum, o.sharp.compliance, 1e-8 * sum);
+  EXPECT_NEAR(sum, o.crisp.compliance, 1e-8 * sum);
 
-  // And the outcome is that of the design left behind, computed afresh.
+  // The outcome agrees with a new evaluation of the final design.
   const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
   ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
   MmcProblem again({kPlate, problems[0].design, ersatz, compliance}, whole(1), least_compliance());
@@ -67,7 +68,7 @@ TEST(EslLoop, MakesAFeasibleStifferDesign) {
 
 TEST(EslLoop, ComparesWithTheSameVolumeSpreadEvenly) {
   std::vector<BodyProblem> problems = one_body();
-  const auto simulate = [](std::span<const fem::Factors>) {
+  const auto simulate = [](std::span<const fem::ScaleFactors>) {
     return CycleMotion{{turning_plate(2)}};
   };
   const auto outcome = esl_loop(problems, simulate, quick(2), {});
@@ -77,23 +78,23 @@ TEST(EslLoop, ComparesWithTheSameVolumeSpreadEvenly) {
   compliance.evaluate(half, half, value);
   // Two systems are solved, the second one with half of the stiffness. Their condition number is
   // about 5 E t / λ: E t = 1e6 N/m is the membrane stiffness, λ = E I (1.875 / L)^4 L / n = 7 N/m
-  // the least eigenvalue, that of the first bending mode (E I = 83 N m^2, L = 0.6 m, n = 671
-  // nodes). A backward stable solution has a relative error of at most that times the machine
-  // precision.
+  // is the smallest eigenvalue, that of the first bending mode (E I = 83 N m^2, L = 0.6 m, n = 671
+  // nodes). A backward stable solution has a relative error of at most the condition number times
+  // the machine precision.
   const double condition = 5e6 / 7;
   EXPECT_NEAR(outcome[0].uniform_compliance, value.f,
               condition * std::numeric_limits<double>::epsilon() * value.f);
 }
 
-// Every row is about the iterate it comes with: state, compliance and sharp picture belong to x.
+// Every row describes its own iterate: state, compliance and crisp design belong to x.
 TEST(EslLoop, RowsDescribeTheirIterates) {
   for (const char* name : {"mma", "nlopt_mma", "ipopt"}) {
     std::vector<BodyProblem> problems = one_body();
     const fem::EslSets loads = turning_plate(3);
-    const auto simulate = [&](std::span<const fem::Factors>) { return CycleMotion{{loads}}; };
+    const auto simulate = [&](std::span<const fem::ScaleFactors>) { return CycleMotion{{loads}}; };
     const Ersatz ersatz(kGrid, 1e-3, problems[0].solid, {});
     ComplianceEvaluator compliance(loads, kSection, {}, {}, {});
-    int rows = 0, evaluations = 0, sharp = 0;
+    int rows = 0, evaluations = 0, crisp = 0;
     LoopObserver observer;
     observer.iteration = [&](const IterationReport& r) {
       EXPECT_EQ(r.iteration, ++rows);
@@ -108,15 +109,15 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
                        least_compliance());
       again.evaluate(design.x());
       EXPECT_NEAR(again.compliance(), r.state.compliance(), 1e-9 * again.compliance()) << name;
-      EXPECT_EQ(r.sharp != nullptr, rows % 7 == 0);
-      if (r.sharp) {
-        ++sharp;
+      EXPECT_EQ(r.crisp != nullptr, rows % 7 == 0);
+      if (r.crisp) {
+        ++crisp;
         EXPECT_NEAR(
-            r.sharp->volume,
+            r.crisp->volume,
             area_fractions(kGrid, r.state.components(), kScale.min_thickness, problems[0].solid, {})
                 .mean(),
-            2e-3);  // 64 samples of a cell
-        EXPECT_GT(r.sharp->compliance, 0);
+            2e-3);  // 64 samples per cell
+        EXPECT_GT(r.crisp->compliance, 0);
       }
       return true;
     };
@@ -124,14 +125,14 @@ TEST(EslLoop, RowsDescribeTheirIterates) {
     settings.design.optimizer.name = name;
     const auto outcome = esl_loop(problems, simulate, settings, observer);
     EXPECT_EQ(outcome[0].iterations, rows) << name;
-    EXPECT_EQ(sharp, rows / 7) << name;
+    EXPECT_EQ(crisp, rows / 7) << name;
     EXPECT_GE(outcome[0].evaluations, evaluations) << name;
   }
 }
 
 TEST(EslLoop, EveryStageHasItsBandAndItsShare) {
   std::vector<BodyProblem> problems = one_body({3, 2, 1});
-  const auto simulate = [](std::span<const fem::Factors>) {
+  const auto simulate = [](std::span<const fem::ScaleFactors>) {
     return CycleMotion{{turning_plate(2)}};
   };
   std::vector<int> per_band(4, 0);
@@ -144,9 +145,9 @@ TEST(EslLoop, EveryStageHasItsBandAndItsShare) {
   EXPECT_EQ(per_band, (std::vector<int>{0, 4, 3, 3}));
 }
 
-// What comes of the best of several starts is what comes of that start alone.
+// The outcome of several starts is exactly the outcome of the best start alone.
 TEST(EslLoop, TakesTheBestOfItsStarts) {
-  const auto simulate = [](std::span<const fem::Factors>) {
+  const auto simulate = [](std::span<const fem::ScaleFactors>) {
     return CycleMotion{{turning_plate(2)}};
   };
   std::vector<int> bands;
@@ -175,15 +176,15 @@ TEST(EslLoop, TakesTheBestOfItsStarts) {
     const BodyOutcome found = esl_loop(problems, simulate, quick(20), observer)[0];
     EXPECT_EQ(static_cast<size_t>(found.start), (best + 3 - first) % 3 + 1);
     EXPECT_EQ(found.compliance, alone[best].compliance);
-    EXPECT_EQ(found.sharp.compliance, alone[best].sharp.compliance);
+    EXPECT_EQ(found.crisp.compliance, alone[best].crisp.compliance);
     EXPECT_EQ(found.iterations, 60);
     ASSERT_EQ(bands.size(), 60U);
     for (size_t k = 0; k < bands.size(); ++k) EXPECT_EQ(bands[k], k % 20 < 10 ? 2 : 1) << k;
   }
 }
 
-// Loads of half the energy, with and without a motion that is stiffer by half as its deflections
-// are large: w |U_s - U| / w U by hand.
+// Loads of half the energy, with and without a motion that is stiffer by half because of large
+// deflections. Reference: w |U_s - U| / w U computed by hand.
 TEST(LoadDifference, IsWhatTheSecantStiffnessLeaves) {
   std::vector<fem::EslSet> motion(2);
   motion[0].weight = 1;
@@ -195,7 +196,8 @@ TEST(LoadDifference, IsWhatTheSecantStiffnessLeaves) {
     EXPECT_NEAR(found.loads, (1 * 0.5 + 3 * 1) / (1 * 1 + 3 * 2.0), 1e-14);
     EXPECT_NEAR(found.geometric, stiffer - 1, 1e-14);
   }
-  // Where the motion passes through rest there is no secant: energies are compared as they are.
+  // If the motion has zero strain energy at a load, there is no secant stiffness; the energies are
+  // then compared directly.
   motion[0].strain_energy = 0;
   EXPECT_NEAR(load_difference(made_for, own, motion).loads,
               (0.5 + 3 * (4 / 3.0) * 0.5) / (3 * 4 / 3.0), 1e-14);
@@ -209,7 +211,7 @@ TEST(EslLoop, StopsWhenTheObserverSaysSo) {
   LoopSettings settings = quick(20);
   settings.max_cycles = 5;
   int rows = 0, cycles = 0, calls = 0;
-  const auto simulate = [&](std::span<const fem::Factors> factors) {
+  const auto simulate = [&](std::span<const fem::ScaleFactors> factors) {
     ++calls;
     EXPECT_EQ(factors.size(), 2u);
     return CycleMotion{{turning_plate(2), turning_plate(2)}};
@@ -227,7 +229,7 @@ TEST(EslLoop, StopsWhenTheObserverSaysSo) {
   ASSERT_EQ(outcome.size(), 1u);
   EXPECT_EQ(outcome[0].iterations, 5);
   EXPECT_TRUE(outcome[0].stop.starts_with("interrupted after ")) << outcome[0].stop;
-  EXPECT_GT(outcome[0].sharp.compliance, 0);
+  EXPECT_GT(outcome[0].crisp.compliance, 0);
 }
 
 TEST(EslLoop, DynamicsThatFailEndIt) {
@@ -237,7 +239,7 @@ TEST(EslLoop, DynamicsThatFailEndIt) {
   settings.max_cycles = 3;
   settings.tolerance = 0;
   int rows = 0, calls = 0;
-  const auto simulate = [&](std::span<const fem::Factors>) -> CycleMotion {
+  const auto simulate = [&](std::span<const fem::ScaleFactors>) -> CycleMotion {
     if (++calls == 2) throw Error::numerical("no convergence");
     return {{turning_plate(2)}};
   };
@@ -245,7 +247,7 @@ TEST(EslLoop, DynamicsThatFailEndIt) {
   observer.iteration = [&](const IterationReport&) { return ++rows > 0; };
   EXPECT_THROW(esl_loop(problems, simulate, settings, observer), Error);
   EXPECT_EQ(rows, 3);
-  EXPECT_GT((problems[0].design.x() - start).norm(), 0);  // what the first cycle found stands
+  EXPECT_GT((problems[0].design.x() - start).norm(), 0);  // the result of the first cycle is kept
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 
 namespace flexmorph::mmc::test {
 
-/// Ten cells across are too few to take half a cell off all around.
+/// Returns settings without erosion, because ten cells across are too few to remove half a cell all
+/// around.
 inline TdfSettings whole(double band) {
   TdfSettings settings = tdf_settings(band);
   settings.erosion = 0;
@@ -19,7 +20,7 @@ inline std::vector<BodyProblem> one_body(std::vector<double> bands = {2, 1}) {
 
 inline LoopSettings quick(int iterations) {
   LoopSettings settings;
-  settings.design.sharp_every = 7;
+  settings.design.crisp_every = 7;
   settings.design.optimizer.max_iterations = iterations;
   return settings;
 }

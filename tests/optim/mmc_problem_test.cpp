@@ -1,6 +1,6 @@
-// The design problem over fixed loads: its values are those of its parts, its gradients pass the
-// Taylor test over three decades for every load definition and support, and a
-// design that has come apart is refused.
+// Shows that the values of the design problem with fixed loads are those of its parts, that its
+// gradients pass the Taylor test over three decades for every load definition and support, and that
+// a design that is not connected is refused.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ struct Choice {
 };
 void PrintTo(const Choice& choice, std::ostream* out) { *out << choice.name; }
 
-// `inertia` with `far_end` is refused: see mmc_compliance_test.
+// `inertia` with `far_end` is refused, see mmc_compliance_test.
 const Choice kChoices[] = {
     {"inertia_moving_root", LoadDefinition::inertia, Support::moving_root},
     {"frozen_moving_root", LoadDefinition::frozen, Support::moving_root},
@@ -28,15 +28,15 @@ const Choice kChoices[] = {
     {"stiffness_moving_root", LoadDefinition::stiffness, Support::moving_root},
     {"stiffness_far_end", LoadDefinition::stiffness, Support::far_end}};
 
-/// A design problem with everything it refers to.
-struct Whole {
+/// A design problem and all objects that it refers to.
+struct FullProblem {
   Design design;
   Ersatz ersatz;
   ComplianceEvaluator compliance;
   MmcProblem problem;
 
-  explicit Whole(const std::vector<Component>& start, const ComplianceSettings& settings = {},
-                 double max_volume = 0.5)
+  explicit FullProblem(const std::vector<Component>& start, const ComplianceSettings& settings = {},
+                       double max_volume = 0.5)
       : design(kGrid, start, kScale),
         ersatz(kGrid, tdf_settings().alpha, strip(), {}),
         compliance(turning_plate(4), kSection, settings, VectorXd::Constant(kGrid.n_cells(), 0.5),
@@ -44,8 +44,8 @@ struct Whole {
         problem({kPlate, design, ersatz, compliance}, tdf_settings(),
                 least_compliance(max_volume)) {}
 
-  /// x by which a vector of one cell (positions, lengths, thicknesses; angles turn an end of a
-  /// component by one cell) changes the variables.
+  /// Returns the change of the variables for a change of one cell (positions, lengths, thicknesses;
+  /// an angle moves the end of a component by one cell).
   VectorXd of_cells(VectorXd cells) const {
     VectorXd unit = VectorXd::Ones(cells.size());
     design.scale_gradient(unit);
@@ -62,9 +62,10 @@ class EveryLoadDefinition : public ::testing::TestWithParam<Choice> {
 INSTANTIATE_TEST_SUITE_P(Table, EveryLoadDefinition, ::testing::ValuesIn(kChoices),
                          [](const auto& test) { return std::string(test.param.name); });
 
-/// A random direction of at most one cell, along which f bends most out of a few: the curvatures
-/// of many nodes nearly cancel along some, and what is left of order two drowns in order three.
-VectorXd bent_direction(Whole& whole, const std::function<double(const VectorXd&)>& f,
+/// Returns, of a few random directions of at most one cell, the one with the largest second
+/// derivative of f. Along some directions the second derivatives of many nodes nearly cancel, and
+/// the third order would dominate.
+VectorXd bent_direction(FullProblem& whole, const std::function<double(const VectorXd&)>& f,
                         unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -82,15 +83,15 @@ VectorXd bent_direction(Whole& whole, const std::function<double(const VectorXd&
   return best;
 }
 
-// From 1e-3 of a cell down to 1e-6: above, nodes cross the edges of the band, where H is once
-// differentiable only. log f and V/V_max are of order one, the remainders at the end of order
-// 1e-14: no noise needs to be left out.
+// Steps from 1e-3 of a cell down to 1e-6: with larger steps nodes cross the edges of the band,
+// where H is differentiable only once. log f and V/V_max are of order one and the last remainders
+// of order 1e-14, therefore no point has to be left out because of noise.
 TEST_P(EveryLoadDefinition, GradientsPassTheTaylorTest) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
-    Whole whole(random_layout(seed), settings());
+    FullProblem whole(random_layout(seed), settings());
     MmcProblem& problem = whole.problem;
     const VectorXd x = whole.design.x();
-    const optim::Response at = problem.evaluate(x);
+    const optim::ProblemValues at = problem.evaluate(x);
     const auto objective = [&](const VectorXd& y) { return problem.evaluate(y).f; };
     const auto volume = [&](const VectorXd& y) { return problem.evaluate(y).g[0]; };
     const auto of_f = optim::taylor_test(objective, at.df, x,
@@ -104,37 +105,37 @@ TEST_P(EveryLoadDefinition, GradientsPassTheTaylorTest) {
   }
 }
 
-// Every single variable against central differences: an entry that is wrong or missing cannot hide
-// behind the others.
+// Every single variable is compared with central differences, so that a wrong or missing entry
+// cannot be hidden by others.
 TEST(MmcProblem, EveryEntryAgreesWithDifferences) {
-  Whole whole(random_layout(7));
+  FullProblem whole(random_layout(7));
   MmcProblem& problem = whole.problem;
   const VectorXd x = whole.design.x();
-  const optim::Response at = problem.evaluate(x);
+  const optim::ProblemValues at = problem.evaluate(x);
   const VectorXd unit = whole.of_cells(VectorXd::Ones(x.size()));
   const double largest = at.df.cwiseProduct(unit).cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     VectorXd d = VectorXd::Zero(x.size());
     d[i] = 1e-3 * unit[i];
-    const optim::Response plus = problem.evaluate(x + d), minus = problem.evaluate(x - d);
-    // A jump of the second derivative at the edge of the band, met inside the step of 1e-3 cells,
-    // leaves 1e-3 / 4 of it.
+    const optim::ProblemValues plus = problem.evaluate(x + d), minus = problem.evaluate(x - d);
+    // If the edge of the band lies within the step of 1e-3 cells, the jump of the second derivative
+    // causes an error of 1e-3 / 4 of this jump.
     EXPECT_NEAR((plus.f - minus.f) / 2e-3, at.df[i] * unit[i], 1e-3 * largest) << i;
     EXPECT_NEAR((plus.g[0] - minus.g[0]) / 2e-3, at.dg(0, i) * unit[i], 1e-6) << i;
   }
 }
 
 TEST(MmcProblem, IsMadeOfItsParts) {
-  Whole whole(random_layout(8), {}, 0.4);
+  FullProblem whole(random_layout(8), {}, 0.4);
   MmcProblem& problem = whole.problem;
   EXPECT_EQ(problem.n_variables(), 168);
   EXPECT_EQ(problem.n_constraints(), 1);
   EXPECT_EQ(problem.start(), whole.design.x());
-  const optim::Response r = problem.evaluate(problem.start());
+  const optim::ProblemValues r = problem.evaluate(problem.start());
 
   UnionTdf tdf(kGrid, tdf_settings());
   tdf.evaluate(whole.design.components());
-  CellFactors factors;
+  CellScaleFactors factors;
   whole.ersatz.factors(tdf.density(), tdf.eroded(), factors);
   EXPECT_EQ(problem.phi(), tdf.phi());
   EXPECT_EQ(problem.factors().stiffness, factors.stiffness);
@@ -149,23 +150,24 @@ TEST(MmcProblem, IsMadeOfItsParts) {
   EXPECT_EQ(problem.band(), tdf_settings().band);
 }
 
-// The same design gives the same bits, whatever was looked at in between.
+// A repeated evaluation of a design is equal bit for bit, whatever was evaluated in between.
 TEST(MmcProblem, RepeatsItself) {
-  Whole whole(random_layout(9));
+  FullProblem whole(random_layout(9));
   MmcProblem& problem = whole.problem;
   const VectorXd x = problem.start();
-  const optim::Response first = problem.evaluate(x);
+  const optim::ProblemValues first = problem.evaluate(x);
   problem.evaluate(x + whole.of_cells(VectorXd::Ones(x.size())));
-  const optim::Response again = problem.evaluate(x);
+  const optim::ProblemValues again = problem.evaluate(x);
   EXPECT_EQ(first.f, again.f);
   EXPECT_EQ(first.df, again.df);
   EXPECT_EQ(first.dg, again.dg);
 }
 
-/// The layout with all that reaches into a strip of this width around x = 0.3 m taken aside.
+/// Returns the layout with a gap of this width around x = 0.3 m: components that reach into it are
+/// moved aside.
 std::vector<Component> cut_layout(double width) {
   std::vector<Component> all = layout(0.01);
-  const double aside = 0.5 * width + 0.035;  // about what a component reaches to each side
+  const double aside = 0.5 * width + 0.035;  // about the reach of a component to each side
   for (Component& c : all) {
     const double from_cut = c.center.x() - 0.3;
     if (std::abs(from_cut) < aside) c.center.x() = 0.3 + std::copysign(aside, from_cut);
@@ -174,8 +176,8 @@ std::vector<Component> cut_layout(double width) {
 }
 
 TEST(MmcProblem, RefusesADesignThatHasComeApart) {
-  const Whole cut(cut_layout(0.08));
-  Whole whole(layout(0.01));
+  const FullProblem cut(cut_layout(0.08));
+  FullProblem whole(layout(0.01));
   MmcProblem& problem = whole.problem;
   const VectorXd start = problem.start();
   const double compliance = std::exp(problem.evaluate(start).f);
@@ -187,9 +189,10 @@ TEST(MmcProblem, RefusesADesignThatHasComeApart) {
   EXPECT_TRUE(problem.acceptable(start));
 }
 
-// An optimizer that steps back when told so shows no design in two parts, however long its steps.
+// An optimizer that steps back from refused designs reports only connected designs, however long
+// its steps are.
 TEST(MmcProblem, IteratesHangTogether) {
-  Whole whole(layout());
+  FullProblem whole(layout());
   optim::Settings settings;
   settings.max_iterations = 40;
   settings.move_limit = 0.3;
@@ -208,7 +211,7 @@ TEST(MmcProblem, IteratesHangTogether) {
 }
 
 TEST(MmcProblem, RefusesWhatIsNotANumber) {
-  Whole whole(layout());
+  FullProblem whole(layout());
   VectorXd x = whole.problem.start();
   x[10] = std::nan("");
   EXPECT_THROW(whole.problem.evaluate(x), Error);

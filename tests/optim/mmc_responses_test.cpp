@@ -1,6 +1,6 @@
-// Every row of the table of responses, as an objective and as a limit: derivatives against
-// differences and by the Taylor test, values against what they are made of. What a goal says of
-// itself, and how often it has the state solved.
+// Shows that every row of the table of responses is correct as an objective and as a limit:
+// derivatives against differences and by the Taylor test, values against their definitions; and
+// that goals are described correctly and solve the state as rarely as possible.
 
 #include <gtest/gtest.h>
 
@@ -18,10 +18,10 @@ extern const ResponseRow kFirstMoment;  // tests/examples/response.cpp
 namespace flexmorph::mmc::test {
 namespace {
 
-/// Length of all axes [m]: known by the components alone.
+/// A response that depends on the components only: the length of all axes [m].
 class Axes final : public Response {
  public:
-  void evaluate(const Seen& at, Values& out) override {
+  void evaluate(const DesignView& at, Values& out) override {
     const auto n = static_cast<Eigen::Index>(at.components.size());
     out.f = VectorXd::Zero(1);
     out.d_parameters = MatrixXd::Zero(1, n * Component::kParameters);
@@ -37,14 +37,14 @@ const ResponseRow kAxes{.name = "axes",
                         .full = [](const Plate& plate) { return 10 * plate.grid.width; },
                         .make = make_response<Axes>};
 
-/// A turning plate, whose loads follow its mass, with a goal.
-struct Whole {
+/// A design problem with a goal on a rotating plate whose loads depend on its mass.
+struct FullProblem {
   Design design;
   Ersatz ersatz;
   ComplianceEvaluator loads;
   MmcProblem problem;
 
-  explicit Whole(const Goal& goal, unsigned seed = 3)
+  explicit FullProblem(const Goal& goal, unsigned seed = 3)
       : design(kGrid, random_layout(seed), kScale),
         ersatz(kGrid, tdf_settings().alpha, strip(), {}),
         loads(turning_plate(4), kSection, {}, {}, {}),
@@ -52,19 +52,19 @@ struct Whole {
 };
 
 double value_of(const ResponseRow& row) {
-  Whole whole({&kVolume, {Limit(row, 1, false, kPlate)}});
+  FullProblem whole({&kVolume, {Limit(row, 1, false, kPlate)}});
   whole.problem.evaluate(whole.problem.start());
   return whole.problem.values(row)->maxCoeff();
 }
 
-/// Every value of f and g by itself.
+/// A value of f or g as a function of the variables.
 using Each = std::function<double(const VectorXd&)>;
 template <class Use>
-void each_value(MmcProblem& problem, const optim::Response& at, const Use& use) {
+void each_value(MmcProblem& problem, const optim::ProblemValues& at, const Use& use) {
   const bool linear = problem.goal().objective->per_load;  // f is its bound
   for (Eigen::Index row = linear ? 0 : -1; row < at.g.size(); ++row) {
     const Each f = [&problem, row](const VectorXd& x) {
-      const optim::Response r = problem.evaluate(x);
+      const optim::ProblemValues r = problem.evaluate(x);
       return row < 0 ? r.f : r.g[row];
     };
     use(f, row < 0 ? at.df : VectorXd(at.dg.row(row)), "row " + std::to_string(row));
@@ -73,9 +73,9 @@ void each_value(MmcProblem& problem, const optim::Response& at, const Use& use) 
 
 std::vector<const ResponseRow*> all_rows() {
   std::vector<const ResponseRow*> rows(responses().begin(), responses().end());
-  // Those of a motion: tests/cases/motion_design_test.cpp.
+  // Responses of a motion are tested in tests/cases/motion_design_test.cpp.
   std::erase_if(rows, [](const ResponseRow* row) { return row->of_motion; });
-  rows.push_back(&kCompliancePeak);  // stands for the worst one where gradients are asked for
+  rows.push_back(&kCompliancePeak);  // replaces the worst compliance where gradients are needed
   rows.push_back(&kAxes);
   rows.push_back(&kFirstMoment);
   return rows;
@@ -83,8 +83,8 @@ std::vector<const ResponseRow*> all_rows() {
 
 class EveryResponse : public ::testing::TestWithParam<const ResponseRow*> {
  protected:
-  /// As the objective, and with both bounds under an objective without a state: neither value nor
-  /// derivative depends on what the bounds are to be.
+  /// Returns the response as the objective, and as both bounds under an objective without a state.
+  /// Neither its values nor its derivatives depend on the bounds.
   static std::vector<Goal> goals() {
     const ResponseRow& row = *GetParam();
     const Limit other(row.needs_state() ? kVolume : kComplianceSum, 0.5, false, kPlate);
@@ -96,17 +96,17 @@ class EveryResponse : public ::testing::TestWithParam<const ResponseRow*> {
 INSTANTIATE_TEST_SUITE_P(Table, EveryResponse, ::testing::ValuesIn(all_rows()),
                          [](const auto& test) { return key_of(*test.param); });
 
-// See mmc_problem_test for the steps.
+// The steps are explained in mmc_problem_test.
 TEST_P(EveryResponse, PassesTheTaylorTest) {
   for (const Goal& goal : goals()) {
-    Whole whole(goal);
+    FullProblem whole(goal);
     const VectorXd x = whole.problem.start();
-    const optim::Response at = whole.problem.evaluate(x);
+    const optim::ProblemValues at = whole.problem.evaluate(x);
     ASSERT_EQ(at.g.size(), whole.problem.n_constraints());
     const VectorXd unit = cells_of(whole.design);
     each_value(whole.problem, at, [&](const Each& f, const VectorXd& df, const std::string& what) {
       const VectorXd along = bent_direction(f, x, unit, 5);
-      // What is linear in the variables has nothing left but round-off.
+      // A response that is linear in the variables has only round-off in its remainder.
       const auto taylor = optim::taylor_test(f, df, x, along, 1e-3, 3, 1e-15);
       if (GetParam() == &kAxes && !(taylor.order < 10)) return;
       EXPECT_NEAR(taylor.order, 2, 0.05) << what << "\n" << taylor.table();
@@ -116,9 +116,9 @@ TEST_P(EveryResponse, PassesTheTaylorTest) {
 
 TEST_P(EveryResponse, AgreesWithDifferences) {
   for (const Goal& goal : goals()) {
-    Whole whole(goal, 8);
+    FullProblem whole(goal, 8);
     const VectorXd x = whole.problem.start();
-    const optim::Response at = whole.problem.evaluate(x);
+    const optim::ProblemValues at = whole.problem.evaluate(x);
     std::mt19937 engine(7);
     std::uniform_real_distribution<double> uniform(-1, 1);
     VectorXd along(x.size());
@@ -130,17 +130,17 @@ TEST_P(EveryResponse, AgreesWithDifferences) {
   }
 }
 
-// A bound that the design meets exactly leaves 0 of its constraint; below it, minus a part of it,
-// or the logarithm of the part.
+// A constraint is 0 if the design meets its bound exactly. Otherwise it is the relative distance
+// from the bound, or the logarithm of the ratio.
 TEST_P(EveryResponse, IsMeasuredInPartsOfItsLimit) {
   const ResponseRow& row = *GetParam();
   const double value = value_of(row);
   EXPECT_GT(value, 0);
   const ResponseRow* objective = &row == &kVolume ? &kMass : &kVolume;
-  Whole whole({objective,
-               {Limit(row, value, false, kPlate), Limit(row, 2 * value, false, kPlate),
-                Limit(row, 2 * value, true, kPlate)}});
-  const optim::Response at = whole.problem.evaluate(whole.problem.start());
+  FullProblem whole({objective,
+                     {Limit(row, value, false, kPlate), Limit(row, 2 * value, false, kPlate),
+                      Limit(row, 2 * value, true, kPlate)}});
+  const optim::ProblemValues at = whole.problem.evaluate(whole.problem.start());
   const Eigen::Index m = at.g.size() / 3;
   EXPECT_EQ(m, row.per_load ? 4 : 1);
   const double half = row.full ? 0.5 - 1 : std::log(0.5);
@@ -154,9 +154,9 @@ TEST(Responses, AreMadeOfWhatTheyMeasure) {
   const Goal all{&kComplianceSum,
                  {Limit(kVolume, 0.5, false, kPlate), Limit(kMass, 1, false, kPlate),
                   Limit(kComplianceWorst, 1, false, kPlate), Limit(kAxes, 1, false, kPlate)}};
-  Whole whole(all);
-  const optim::Response r = whole.problem.evaluate(whole.problem.start());
-  const CellFactors& b = whole.problem.factors();
+  FullProblem whole(all);
+  const optim::ProblemValues r = whole.problem.evaluate(whole.problem.start());
+  const CellScaleFactors& b = whole.problem.factors();
   ComplianceEvaluator again(turning_plate(4), kSection, {}, {}, {});
   ComplianceEvaluator::Value value;
   again.evaluate(b.stiffness, b.mass, value);
@@ -170,14 +170,15 @@ TEST(Responses, AreMadeOfWhatTheyMeasure) {
   for (const Component& c : whole.design.components()) length += 2 * c.half_length;
   EXPECT_NEAR((*whole.problem.values(kAxes))[0], length, 1e-12);
   EXPECT_EQ(r.f, std::log(value.f));
-  EXPECT_EQ(whole.problem.compliance(), value.f);  // what is minimized stands for the design
+  EXPECT_EQ(whole.problem.compliance(), value.f);  // the minimized compliance represents the design
   EXPECT_EQ(r.g.size(), 1 + 1 + 4 + 1);
   EXPECT_EQ(whole.problem.row_of(3), 6);
 }
 
 TEST(Responses, ShareOneFactorization) {
-  Whole whole({&kComplianceWorst,
-               {Limit(kVolume, 0.5, false, kPlate), Limit(kComplianceSum, 1, false, kPlate)}});
+  FullProblem whole(
+      {&kComplianceWorst,
+       {Limit(kVolume, 0.5, false, kPlate), Limit(kComplianceSum, 1, false, kPlate)}});
   const VectorXd x = whole.problem.start();
   const int before = whole.loads.factorizations();
   whole.problem.evaluate(x + 1e-3 * VectorXd::Ones(x.size()));
@@ -185,17 +186,17 @@ TEST(Responses, ShareOneFactorization) {
 }
 
 TEST(Responses, WithoutAStateNoneIsSolved) {
-  Whole whole({&kMass, {Limit(kAxes, 1, true, kPlate)}});
+  FullProblem whole({&kMass, {Limit(kAxes, 1, true, kPlate)}});
   const int before = whole.loads.factorizations();
   const VectorXd x = whole.problem.start();
   whole.problem.evaluate(x);
   EXPECT_EQ(whole.loads.factorizations(), before);
   EXPECT_TRUE(std::isnan(whole.problem.compliance()));
-  // In one piece or not is all that is known of such a design.
+  // Only the connectivity of such a design is known.
   EXPECT_TRUE(whole.problem.acceptable(x));
 }
 
-// A full rectangle about the middle of its left edge: m (w² / 3 + h² / 12).
+// Reference: a full rectangle about the middle of its left edge, m (w² / 3 + h² / 12).
 TEST(Inertia, OfAFullPlateIsThatOfARectangle) {
   const ResponseRow& row = *find_response("inertia", "");
   Plate plate = kPlate;
@@ -208,7 +209,7 @@ TEST(Inertia, OfAFullPlateIsThatOfARectangle) {
   Values found;
   row.make(plate)->evaluate({{full, full}, {}, state}, found);
   EXPECT_NEAR(found.f[0], whole, 1e-14);
-  // The half next to the root: half of the mass, half as long.
+  // Only the half next to the root: half of the mass and half of the length.
   plate.outside.assign(static_cast<size_t>(kGrid.n_cells()), 0);
   for (int cell = kGrid.cell(kGrid.nx / 2, 0); cell < kGrid.n_cells(); ++cell)
     plate.outside[static_cast<size_t>(cell)] = 1;

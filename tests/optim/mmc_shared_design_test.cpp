@@ -1,6 +1,6 @@
-// Designs of bodies that share one budget of mass: equal bodies share equally, the one with more to
-// carry gets more, and nothing of what a body keeps for itself (bands, drops, clean-up, rows, its
-// place among the outcomes of a cycle) gets lost. Cycles make a table.
+// Shows that designs of bodies that share one budget of mass are correct: equal bodies get equal
+// shares, the body with the larger load gets more, and the separate data of the bodies (bands,
+// removals, post-processing, rows, order of outcomes) are kept. A run of cycles gives a table.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@
 namespace flexmorph::mmc::test {
 namespace {
 
-/// A body of a whole run. (Ten cells across are too few to take half a cell off all around.)
+/// Returns a body for complete runs. (Erosion by half a cell is not used in evaluations, because
+/// ten cells across are too few.)
 BodyProblem body(const std::string& name, std::vector<double> bands = {1.5}) {
   std::vector<TdfSettings> settings;
   for (const double band : bands) settings.push_back(tdf_settings(band));
@@ -30,36 +31,36 @@ struct Designed {
 
 DesignSettings settings_of(const std::string& optimizer, int iterations) {
   DesignSettings settings;
-  settings.sharp_every = 0;
+  settings.crisp_every = 0;
   settings.optimizer.name = optimizer;
   settings.optimizer.max_iterations = iterations;
   if (optimizer == "ipopt") settings.optimizer.options["box"] = 0.1;  // as cases have it
   return settings;
 }
 
-/// Two equal bodies, forces at their tips.
+/// Designs two equal bodies with forces at their tips, with a common or with separate budgets.
 Designed designed(const std::string& optimizer, int iterations, double force_a, double force_b,
                   bool together) {
   Designed out{body("a"), body("b"), {}};
   ComplianceEvaluator loads_a = tip_load(kSection, force_a), loads_b = tip_load(kSection, force_b);
   const DesignSettings settings = settings_of(optimizer, iterations);
-  bool going = true;
+  bool is_running = true;
   if (together) {
     const LoadedBody bodies[] = {{out.a, loads_a}, {out.b, loads_b}};
-    out.outcomes = design_bodies(bodies, 1, settings, {}, going);
+    out.outcomes = design_bodies(bodies, 1, settings, {}, is_running);
   } else {
-    out.outcomes = {design_body(out.a, loads_a, 1, settings, {}, going),
-                    design_body(out.b, loads_b, 1, settings, {}, going)};
+    out.outcomes = {design_body(out.a, loads_a, 1, settings, {}, is_running),
+                    design_body(out.b, loads_b, 1, settings, {}, is_running)};
   }
   return out;
 }
 
-/// Is there a piece of material from end to end, links of a tenth of the density included? (Ten
-/// cells across are too few for the sharp picture of such thin components.)
+/// Returns whether material connects both ends, including cells of a tenth of the density. (Ten
+/// cells across are too few for crisp designs of such thin components.)
 bool hangs_together(const BodyProblem& p) {
   UnionTdf tdf(p.grid, p.bands.back());
   tdf.evaluate(p.design.components());
-  CellFactors factors;
+  CellScaleFactors factors;
   ersatz_of(p).factors(tdf.density(), tdf.eroded(), factors);
   return connectivity(p.grid, 5 * factors.mass, {}).connected;
 }
@@ -68,8 +69,8 @@ class EveryOptimizer : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Table, EveryOptimizer, ::testing::ValuesIn(optim::optimizer_names()),
                          [](const auto& test) { return test.param; });
 
-// By symmetry, equal bodies stay equal up to round-off, which few iterations do not amplify much:
-// the systems have a condition number of about 1e6, so that one evaluation differs by 1e-10.
+// By symmetry equal bodies stay equal up to round-off, which few iterations amplify little: the
+// condition number of the systems is about 1e6, therefore one evaluation differs by 1e-10.
 TEST_P(EveryOptimizer, EqualBodiesShareEqually) {
   const Designed start = designed(GetParam(), 1, 1, 1, true);
   const Designed both = designed(GetParam(), 4, 1, 1, true);
@@ -79,8 +80,9 @@ TEST_P(EveryOptimizer, EqualBodiesShareEqually) {
   EXPECT_NEAR(a.compliance, b.compliance, 1e-6 * a.compliance);
 }
 
-// Ten times the force is a hundred times the compliance: mass goes there, until another gram saves
-// as much in either body, and the sum falls below that of designs with a budget each.
+// Ten times the force is a hundred times the compliance. Mass goes to this body until additional
+// mass saves equally much in both bodies, and the sum of compliances is lower than with separate
+// budgets.
 TEST_P(EveryOptimizer, MassGoesWhereTheLoadIs) {
   const Designed apart = designed(GetParam(), 80, 10, 1, false);
   const Designed both = designed(GetParam(), 80, 10, 1, true);
@@ -95,16 +97,17 @@ TEST_P(EveryOptimizer, MassGoesWhereTheLoadIs) {
   EXPECT_TRUE(hangs_together(both.b));
 }
 
-// A row per body and iteration, each about its own design; violation is that of the budget.
+// There is a row per body and iteration, which describes the body's own design; the violation is
+// that of the budget.
 TEST(DesignBodies, RowsDescribeTheirBodies) {
   for (const char* name : {"mma", "nlopt_ccsaq"}) {
     BodyProblem a = body("a", {2, 1}), b = body("b", {3, 2, 1.5, 1});
-    b.section = kOther;
+    b.section = kSecondSection;
     b.goal = least_compliance(0.3);
-    ComplianceEvaluator loads_a = tip_load(kSection, 2), loads_b = tip_load(kOther, 1);
-    ComplianceEvaluator again_a = tip_load(kSection, 2), again_b = tip_load(kOther, 1);
+    ComplianceEvaluator loads_a = tip_load(kSection, 2), loads_b = tip_load(kSecondSection, 1);
+    ComplianceEvaluator again_a = tip_load(kSection, 2), again_b = tip_load(kSecondSection, 1);
     const Ersatz ersatz = ersatz_of(a);
-    std::map<int, std::pair<double, double>> sums;  // compliance, and mass over the budget
+    std::map<int, std::pair<double, double>> sums;  // compliance, and mass divided by the budget
     std::map<std::string, std::vector<double>> bands;
     int rows = 0;
     const double mass_a = full_mass_of(a), mass_b = full_mass_of(b);
@@ -115,7 +118,7 @@ TEST(DesignBodies, RowsDescribeTheirBodies) {
       EXPECT_EQ(first, rows++ % 2 == 0);
       EXPECT_EQ(r.iteration, (rows + 1) / 2);
       EXPECT_EQ(r.state.x(), *r.iterate.x);
-      EXPECT_EQ(r.sharp != nullptr, r.iteration % 8 == 0);
+      EXPECT_EQ(r.crisp != nullptr, r.iteration % 8 == 0);
       EXPECT_TRUE(first || r.iterate.seconds == 0);
       const Design design(kGrid, r.state.components(), kScale);
       TdfSettings tdf = tdf_settings(r.state.band() / kGrid.dx());
@@ -138,11 +141,11 @@ TEST(DesignBodies, RowsDescribeTheirBodies) {
       return true;
     };
     DesignSettings settings = settings_of(name, 12);
-    settings.sharp_every = 8;
-    bool going = false;
+    settings.crisp_every = 8;
+    bool is_running = false;
     const LoadedBody bodies[] = {{a, loads_a}, {b, loads_b}};
-    const auto outcomes = design_bodies(bodies, 1, settings, observe, going);
-    EXPECT_TRUE(going);
+    const auto outcomes = design_bodies(bodies, 1, settings, observe, is_running);
+    EXPECT_TRUE(is_running);
     ASSERT_EQ(outcomes.size(), 2u);
     EXPECT_EQ(rows, 2 * outcomes[0].iterations);
     EXPECT_EQ(outcomes[0].evaluations, outcomes[1].evaluations);
@@ -150,14 +153,14 @@ TEST(DesignBodies, RowsDescribeTheirBodies) {
     ASSERT_EQ(bands["a"].size(), 2u);
     ASSERT_EQ(bands["b"].size(), 4u);
     EXPECT_NEAR(bands["b"][2], 1.5, 1e-12);
-    // One factorization per evaluation of a body; others for the best design of each of four
-    // stages, a sharp picture in between, and at the end the sharp and the uniform design.
+    // There is one factorization per evaluation of a body. Further ones are: the best design of
+    // each of four stages, one crisp design in between, and the final crisp and uniform designs.
     EXPECT_LE(outcomes[0].factorizations, outcomes[0].evaluations + 4 + 1 + 2);
   }
 }
 
-// Components outside of the domain carry nothing: the body that they belong to loses them, the
-// other one keeps its own. Both together keep their budget, of crisp outlines.
+// Components outside of the domain carry no load: they are removed from their body, and the other
+// body keeps its components. Both bodies together keep the budget, measured by crisp outlines.
 TEST(DesignBodies, WidthsAndRemovalsKeepTheBudget) {
   constexpr double kWanted = 0.018;
   BodyProblem a = body("a"), b = body("b");
@@ -172,21 +175,21 @@ TEST(DesignBodies, WidthsAndRemovalsKeepTheBudget) {
   a.widths = {kWanted, 0.01};
   const int of_b = b.design.n_components();
   ComplianceEvaluator loads_a = tip_load(kSection, 3), loads_b = tip_load(kSection, 1);
-  bool going = true;
+  bool is_running = true;
   const LoadedBody bodies[] = {{a, loads_a}, {b, loads_b}};
-  const auto outcomes = design_bodies(bodies, 1, settings_of("mma", 240), {}, going);
+  const auto outcomes = design_bodies(bodies, 1, settings_of("mma", 240), {}, is_running);
   ASSERT_TRUE(outcomes[0].length_scale);
   EXPECT_FALSE(outcomes[1].length_scale);
   EXPECT_GE(outcomes[0].length_scale->removed, 3);
   EXPECT_EQ(a.design.n_components(),
             static_cast<int>(bars.size()) - outcomes[0].length_scale->removed);
   EXPECT_EQ(b.design.n_components(), of_b);
-  ASSERT_TRUE(outcomes[0].sharp.features);
-  EXPECT_GT(outcomes[0].sharp.volume, outcomes[1].sharp.volume);
-  EXPECT_LE(outcomes[0].sharp.volume + outcomes[1].sharp.volume, 1 + 1e-4);
+  ASSERT_TRUE(outcomes[0].crisp.features);
+  EXPECT_GT(outcomes[0].crisp.volume, outcomes[1].crisp.volume);
+  EXPECT_LE(outcomes[0].crisp.volume + outcomes[1].crisp.volume, 1 + 1e-4);
 }
 
-/// Motions of three bodies.
+/// Returns loads of three bodies.
 std::vector<fem::EslSets> three(double swing) {
   return {turning_plate(2, swing), turning_plate(2), turning_plate(2)};
 }
@@ -197,7 +200,8 @@ std::vector<BodyProblem> three_bodies() {
   return out;
 }
 
-// The first and the third share mass, the second is by itself: rows of groups, outcomes in order.
+// The first and the third body share mass, the second does not: rows come in groups, outcomes in
+// the order of the bodies.
 TEST(EslLoop, SolvesThoseTogetherThatShare) {
   std::vector<BodyProblem> problems = three_bodies();
   std::string order;
@@ -209,26 +213,27 @@ TEST(EslLoop, SolvesThoseTogetherThatShare) {
   LoopSettings settings;
   settings.design = settings_of("mma", 3);
   const auto outcome = esl_loop(
-      problems, [](std::span<const fem::Factors>) { return CycleMotion{three(3)}; }, settings,
+      problems, [](std::span<const fem::ScaleFactors>) { return CycleMotion{three(3)}; }, settings,
       observer);
   EXPECT_EQ(order, "acacacbbb");
   ASSERT_EQ(outcome.size(), 3u);
   EXPECT_EQ(outcome[0].body + outcome[1].body + outcome[2].body, "abc");
 
-  // Stopped in the first group: the second body has no outcome, so the third one has no place.
+  // The run is stopped in the first group. The second body then has no outcome, therefore the
+  // outcome of the third one is not returned either.
   problems = three_bodies();
   int rows = 0;
   observer.iteration = [&](const IterationReport&) { return ++rows < 3; };
   const auto stopped = esl_loop(
-      problems, [](std::span<const fem::Factors>) { return CycleMotion{three(3)}; }, settings,
+      problems, [](std::span<const fem::ScaleFactors>) { return CycleMotion{three(3)}; }, settings,
       observer);
   EXPECT_EQ(rows, 4);  // both rows of the iteration
   ASSERT_EQ(stopped.size(), 1u);
   EXPECT_EQ(stopped[0].body, "a");
 }
 
-// Three cycles: the table is complete after every verified one, changes are those of the designs,
-// and the best one by its motion is the result.
+// Three cycles: the table is complete after every verified cycle, design changes are those of the
+// crisp designs, and the result is the cycle with the best motion.
 TEST(EslLoop, CyclesMakeATable) {
   std::vector<BodyProblem> problems = {body("a"), body("b")};
   LoopSettings settings;
@@ -236,11 +241,11 @@ TEST(EslLoop, CyclesMakeATable) {
   settings.max_cycles = 3;
   settings.tolerance = 0;
   int calls = 0;
-  std::vector<std::vector<VectorXd>> densities;  // of every motion and body
-  const auto simulate = [&](std::span<const fem::Factors>) {
+  std::vector<std::vector<VectorXd>> densities;  // for every motion and body
+  const auto simulate = [&](std::span<const fem::ScaleFactors>) {
     auto& now = densities.emplace_back();
     for (const BodyProblem& p : problems) now.push_back(fractions_of(p, p.design.components()));
-    const double swing = calls % 2 == 0 ? 1 : 3;  // loads of no cycle are those of its motion
+    const double swing = calls % 2 == 0 ? 1 : 3;  // no cycle has the loads of its own motion
     return CycleMotion{{turning_plate(2, swing), turning_plate(2, 2 * swing)},
                        std::vector<double>{9, 3, 1, 2}[static_cast<size_t>(calls++)]};
   };
@@ -271,7 +276,7 @@ TEST(EslLoop, CyclesMakeATable) {
       const BodyVerdict& v = table[c].bodies[k];
       EXPECT_EQ(v.body, k == 0 ? "a" : "b");
       EXPECT_EQ(v.compliance, outcomes[c][k].compliance);
-      EXPECT_EQ(v.sharp_compliance, outcomes[c][k].sharp.compliance);
+      EXPECT_EQ(v.crisp_compliance, outcomes[c][k].crisp.compliance);
       EXPECT_NEAR(v.design_change, (densities[c + 1][k] - densities[c][k]).cwiseAbs().mean(),
                   1e-14);
       EXPECT_GT(v.design_change, 0);

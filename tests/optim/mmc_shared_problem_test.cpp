@@ -1,5 +1,6 @@
-// The problem of bodies that share one budget of mass is made of the bodies' own, its gradients
-// pass the Taylor test, and it refuses what cannot be shared.
+// Shows that the problem of bodies that share one budget of mass consists of the bodies' own
+// problems, that its gradients pass the Taylor test, and that bodies which cannot share are
+// refused.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,8 @@
 namespace flexmorph::mmc::test {
 namespace {
 
-/// Two bodies with everything they refer to: one under loads that follow it, one under fixed ones.
+/// Two bodies with all objects that they refer to: one under loads that depend on its design, one
+/// under fixed loads.
 struct Pair {
   Design design_a, design_b;
   Ersatz ersatz;
@@ -28,15 +30,16 @@ struct Pair {
         design_b(kGrid, start_b, kScale),
         ersatz(kGrid, tdf_settings().alpha, strip(), {}),
         compliance_a(turning_plate(3), kSection, {}, {}, {}),
-        compliance_b(tip_load(kOther, force_b, 2)),
+        compliance_b(tip_load(kSecondSection, force_b, 2)),
         a({kPlate, design_a, ersatz, compliance_a}, tdf_settings(), least_compliance(0.4)),
         b({kOtherPlate, design_b, ersatz, compliance_b}, tdf_settings(1), least_compliance(0.6)),
-        shared({{&a, mass_of(kSection)}, {&b, mass_of(kOther)}}) {}
+        shared({{&a, mass_of(kSection)}, {&b, mass_of(kSecondSection)}}) {}
 
   static double mass_of(const fem::PlaneSection& s) {
     return s.density * s.thickness * kGrid.width * kGrid.height;
   }
-  /// x by which a vector of one cell changes the variables (angles: an end moves by a cell).
+  /// Returns the change of the variables for a change of one cell (angles: the end of a component
+  /// moves by one cell).
   VectorXd of_cells(VectorXd cells) const {
     VectorXd unit = VectorXd::Ones(cells.size() / 2);
     design_a.scale_gradient(unit);  // both have the same scale
@@ -47,7 +50,8 @@ struct Pair {
           kGrid.dx() * cells.segment(k * unit.size(), unit.size()).cwiseQuotient(unit);
     return cells;
   }
-  /// Of a few random directions that in which f bends most, see mmc_problem_test.
+  /// Returns, of a few random directions, the one with the largest second derivative of f, see
+  /// mmc_problem_test.
   VectorXd bent_direction(const std::function<double(const VectorXd&)>& f, unsigned seed) {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -78,14 +82,14 @@ TEST(SharedProblem, IsMadeOfItsParts) {
   EXPECT_EQ(pair.shared.lower().tail(n), pair.design_b.lower());
   EXPECT_EQ(pair.shared.upper().head(n), pair.design_a.upper());
 
-  const optim::Response r = pair.shared.evaluate(x);
-  // Both compliances and masses afresh, from what the designs are.
+  const optim::ProblemValues r = pair.shared.evaluate(x);
+  // Both compliances and masses are recomputed from the designs.
   double compliance = 0, mass = 0;
   const auto add = [&](const Design& design, ComplianceEvaluator& loads, double band,
                        const fem::PlaneSection& s) {
     UnionTdf tdf(kGrid, tdf_settings(band));
     tdf.evaluate(design.components());
-    CellFactors factors;
+    CellScaleFactors factors;
     pair.ersatz.factors(tdf.density(), tdf.eroded(), factors);
     ComplianceEvaluator::Value value;
     loads.evaluate(factors.stiffness, factors.mass, value);
@@ -93,7 +97,7 @@ TEST(SharedProblem, IsMadeOfItsParts) {
     mass += s.density * s.thickness * kGrid.dx() * kGrid.dy() * factors.mass.sum();
   };
   add(pair.design_a, pair.compliance_a, 1.5, kSection);
-  add(pair.design_b, pair.compliance_b, 1, kOther);
+  add(pair.design_b, pair.compliance_b, 1, kSecondSection);
   const double area = kGrid.width * kGrid.height;
   const double budget = 2700 * 0.01 * area * 0.4 + 900 * 0.02 * area * 0.6;
   EXPECT_NEAR(r.f, std::log(compliance), 1e-12);
@@ -102,13 +106,13 @@ TEST(SharedProblem, IsMadeOfItsParts) {
 
 TEST(SharedProblem, GradientsPassTheTaylorTest) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    // A load that makes both compliances equal, or one would be all there is.
+    // This load makes both compliances equal; otherwise one of them would dominate the sum.
     Pair first(random_layout(seed), random_layout(seed + 10));
     first.shared.evaluate(first.shared.start());
     const double ratio = first.a.compliance() / first.b.compliance();
     Pair pair(random_layout(seed), random_layout(seed + 10), 3 * std::sqrt(ratio));
     const VectorXd x = pair.shared.start();
-    const optim::Response at = pair.shared.evaluate(x);
+    const optim::ProblemValues at = pair.shared.evaluate(x);
     EXPECT_NEAR(pair.b.compliance(), pair.a.compliance(), 1e-9 * pair.a.compliance());
     const auto objective = [&](const VectorXd& y) { return pair.shared.evaluate(y).f; };
     const auto budget = [&](const VectorXd& y) { return pair.shared.evaluate(y).g[0]; };

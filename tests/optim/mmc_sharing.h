@@ -6,7 +6,7 @@
 /// Bodies that share mass, for tests.
 namespace flexmorph::mmc::test {
 
-/// The small plate, clamped, with a force at its tip.
+/// Returns the small plate, clamped at its left edge, with a force at its tip.
 inline ComplianceEvaluator tip_load(const fem::PlaneSection& section, double force,
                                     double weight = 1) {
   std::vector<fem::HeldUnknown> held;
@@ -19,8 +19,8 @@ inline ComplianceEvaluator tip_load(const fem::PlaneSection& section, double for
           false};
 }
 
-/// Thicker and lighter than the small plate.
-inline const fem::PlaneSection kOther{0.02, 1e8, 0.3, 900};
-inline const Plate kOtherPlate{kGrid, kOther, {}};
+/// A section that is thicker and lighter than that of the small plate.
+inline const fem::PlaneSection kSecondSection{0.02, 1e8, 0.3, 900};
+inline const Plate kOtherPlate{kGrid, kSecondSection, {}};
 
 }  // namespace flexmorph::mmc::test

@@ -10,7 +10,7 @@
 #include "optim/mmc/loads/compliance_evaluator.h"
 #include "tests/support/disturbance.h"
 
-/// A plate small enough for tests: 60 x 10 cells, 24 components, a few loads.
+/// A plate that is small enough for tests: 60 x 10 cells, 24 components, a few loads.
 namespace flexmorph::mmc::test {
 
 inline const Grid kGrid{.x0 = 0, .y0 = -0.05, .width = 0.6, .height = 0.1, .nx = 60, .ny = 10};
@@ -19,11 +19,11 @@ inline const DesignScale kScale{.half_length = 0.05, .min_thickness = 0.006, .ma
 
 inline const Plate kPlate{kGrid, kSection, {}};
 
-/// The stiffest plate of a volume, by the sum of its loads or by the worst.
+/// Returns the goal of the stiffest plate of a volume, by the sum or by the worst of its loads.
 inline Goal least_compliance(double max_volume = 0.5, const ResponseRow& row = kComplianceSum) {
   return {&row, {Limit(kVolume, max_volume, false, kPlate)}};
 }
-/// The lightest plate that is stiff enough.
+/// Returns the goal of the lightest plate that is stiff enough.
 inline Goal least_volume(double max_compliance, const ResponseRow& row = kComplianceSum) {
   return {&kVolume, {Limit(row, max_compliance, false, kPlate)}};
 }
@@ -37,17 +37,17 @@ inline TdfSettings tdf_settings(double band_in_cells = 1.5) {
   return s;
 }
 
-/// Two columns of cells under the mass at the free end.
+/// Two columns of solid cells under the mass at the free end.
 inline std::vector<std::vector<Vec2>> strip() { return {corners_of({{0.58, -0.05}, {0.6, 0.05}})}; }
 
-/// 12 x 1 boxes of two crossing components.
+/// Returns 12 x 1 boxes of two crossing components.
 inline std::vector<Component> layout(double half_thickness = 0.008) {
   return crossing_layout(kGrid.x0, kGrid.y0, kGrid.width, kGrid.height, 12, 1,
                          testing::disturbed(half_thickness), kScale.half_length);
 }
 
-/// The layout with every parameter moved at random by up to `amount` of its unit: positions and
-/// lengths 10 mm, angles 0.3 rad, half-thicknesses 3 mm.
+/// Returns the layout with every parameter changed at random by up to `amount` of its unit: 10 mm
+/// for positions and lengths, 0.3 rad for angles, 3 mm for half-thicknesses.
 inline std::vector<Component> random_layout(unsigned seed, double amount = 1) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(-amount, amount);
@@ -61,14 +61,15 @@ inline std::vector<Component> random_layout(unsigned seed, double amount = 1) {
   return all;
 }
 
-/// From tip to tip.
+/// Returns a component from tip to tip.
 inline Component bar(const Vec2& from, const Vec2& to, double half_thickness) {
   const Vec2 along = to - from;
   return {0.5 * (from + to), 0.5 * along.norm(), std::atan2(along.y(), along.x()),
           half_thickness,    half_thickness,     half_thickness};
 }
 
-/// Held at its left edge, a unit force upwards at the middle of the right one.
+/// Returns the plate held at its left edge with a unit force upwards at the middle of the right
+/// edge.
 inline ComplianceEvaluator tip_load() {
   std::vector<fem::HeldUnknown> held;
   for (int j = 0; j <= kGrid.ny; ++j)
@@ -77,7 +78,7 @@ inline ComplianceEvaluator tip_load() {
   return {{kGrid, kSection, {}}, held, loads, false};
 }
 
-/// The small plate with a solid strip.
+/// Returns the small plate with a solid strip as a design problem.
 inline BodyProblem body_of(const Design& design, const std::vector<TdfSettings>& bands,
                            const Goal& goal = least_compliance()) {
   return {.body = "plate",
@@ -89,7 +90,8 @@ inline BodyProblem body_of(const Design& design, const std::vector<TdfSettings>&
           .goal = goal};
 }
 
-/// By how much variables change where all moves by one cell (angles: an end of a component does).
+/// Returns the change of the variables if everything moves by one cell (angles: the end of a
+/// component moves by one cell).
 inline VectorXd cells_of(const Design& design) {
   VectorXd scale = VectorXd::Ones(design.n_variables()), out(design.n_variables());
   design.scale_gradient(scale);
@@ -98,9 +100,10 @@ inline VectorXd cells_of(const Design& design) {
   return out;
 }
 
-/// A random direction of at most `unit`, along which f bends most out of a few: the curvatures of
-/// many nodes nearly cancel along some, and what is left of order two drowns in order three.
-/// Variables beyond `unit`, the bound of a worst case, stay.
+/// Returns, of a few random directions of at most `unit`, the one with the largest second
+/// derivative of f: along some directions the second derivatives of many nodes nearly cancel, and
+/// the third order would dominate. Variables beyond those of `unit` (the bound of a worst case) are
+/// not changed.
 inline VectorXd bent_direction(const std::function<double(const VectorXd&)>& f, const VectorXd& x,
                                const VectorXd& unit, unsigned seed) {
   std::mt19937 engine(seed);
@@ -117,10 +120,10 @@ inline VectorXd bent_direction(const std::function<double(const VectorXd&)>& f, 
   return best;
 }
 
-/// Loads of a plate that turns, grows out of its hub by n - 1 cells and swings: accelerations of
-/// the turning frame and of bending, a mass of 0.5 kg at the tip. The deformation (which
-/// `stiffness` loads are made of) is smooth and zero at the root, and no answer to these
-/// accelerations.
+/// Returns loads of a plate that rotates, grows out of its hub by n - 1 cells and swings:
+/// accelerations of the rotating frame and of bending, a mass of 0.5 kg at the tip. The deformation
+/// (from which `stiffness` loads are made) is smooth and zero at the root; it is not the static
+/// solution for these accelerations.
 inline fem::EslSets turning_plate(int n, double swing = 1) {
   const double omega = 2 * std::numbers::pi, speed = 0.5;
   fem::EslSets loads{kGrid, {}};

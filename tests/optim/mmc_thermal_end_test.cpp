@@ -1,6 +1,6 @@
-// A hot plate whose far edge is welded to something cold: energies, derivatives and displacements
-// against a dense plate with an edge that is held exactly, by multipliers; against another
-// support's answer; Taylor tests; the sign of heat.
+// Shows that a hot plate whose far edge is welded to a cold body is correct: energies, derivatives
+// and displacements against a dense plate whose edge is held exactly by multipliers and against
+// another support; Taylor tests; the sign of the thermal contribution.
 
 #include <gtest/gtest.h>
 
@@ -18,9 +18,9 @@ namespace flexmorph::mmc::test {
 namespace {
 
 using ::flexmorph::testing::error_of;
-using ::flexmorph::testing::says;
+using ::flexmorph::testing::mentions;
 
-/// What the springs leave of a rigid edge, see edge_stiffness().
+/// Relative error because springs, not a rigid constraint, hold the edge, see edge_stiffness().
 constexpr double kGivesWay = 1e-3;
 
 fem::EslSets few_loads(int nx, int ny) {
@@ -47,17 +47,17 @@ fem::EslSets few_loads(int nx, int ny) {
   return loads;
 }
 
-/// One load: K w = F + Bᵀ n, w_c = -g (0, Y) at the root; at the far edge differences of v are
-/// -g_e dy, second differences of u zero.
+/// Reference solution of one load: K w = F + Bᵀ n, w_c = -g (0, Y) at the root. At the far edge the
+/// differences of v are -g_e dy, and the second differences of u are zero.
 struct Rigid {
-  VectorXd w, derivative;  // of wᵀ K w, by optim/README.md, Hot plates
+  VectorXd w, derivative;  // of wᵀ K w, see optim/README.md, Hot plates
   double compliance = 0;
 
   Rigid(const fem::EslSets& loads, size_t l, const VectorXd& stiffness, const VectorXd& mass) {
     const Grid& g = loads.grid;
     const fem::EslSet& set = loads.sets[l];
     const int n = 2 * g.n_nodes(), held = 2 * g.node(set.root_column + 1, 0);
-    const int rows = 2 * g.ny - 1;  // of the far edge
+    const int rows = 2 * g.ny - 1;  // constraint rows of the far edge
     MatrixXd K = MatrixXd::Zero(n + rows, n + rows);
     VectorXd F = VectorXd::Zero(n + rows), given = F;
     const auto k = fem::q4_stiffness(kSection, g.dx(), g.dy());
@@ -113,7 +113,7 @@ struct Rigid {
 };
 
 void expect_rigid(const fem::EslSets& loads, const VectorXd& k, const VectorXd& m, bool compress) {
-  // F . u has the round-off of u, which the stiff edge raises.
+  // F . u contains the round-off of u, which the stiff edge increases.
   expect_answers(loads, k, m, compress, {kGivesWay, 1e-7, kGivesWay, kGivesWay}, [&](size_t l) {
     const Rigid rigid(loads, l, k, m);
     return Found{rigid.compliance, rigid.derivative, rigid.w};
@@ -130,7 +130,7 @@ TEST(HeldEnd, EnergiesAreThoseOfARigidEdge) {
   }
 }
 
-/// Loads that are smooth, of a grid `fine` times as fine as 60 x 20.
+/// Returns smooth loads on a grid that is `fine` times as fine as 60 x 20.
 fem::EslSets smooth_loads(int fine) {
   fem::EslSets loads = few_loads(60 * fine, 20 * fine);
   const Grid& g = loads.grid;
@@ -144,9 +144,9 @@ fem::EslSets smooth_loads(int fine) {
   return loads;
 }
 
-// The triangles of the verification hold the far edge of a full plate as its cells do. Energies of
-// cells are too large by half as much when there are twice as many: corners where what is held
-// meets what is free.
+// The triangles of the verification hold the far edge of a full plate as its cells do. The energies
+// of cells are extrapolated to the limit of fine cells, because they converge slowly: there are
+// corners where a held edge meets a free one.
 TEST(HeldEnd, VerificationAgreesWithCells) {
   const fem::EslSets coarse = smooth_loads(1), fine = smooth_loads(2);
   BodyProblem problem = body_of(Design(kGrid, layout(), kScale), {tdf_settings()});
@@ -165,7 +165,8 @@ TEST(HeldEnd, VerificationAgreesWithCells) {
     EXPECT_NEAR(verified.compliances[static_cast<size_t>(l)], limit[l], 0.005 * limit[l]) << l;
 }
 
-// Heat that is held is relieved where material goes; f is linear in all of k but for the springs.
+// Held expansion is relieved where material is removed. f is linear in all of k except for the
+// springs.
 TEST(HeldEnd, TakingMaterialOffRelievesHeldHeat) {
   fem::EslSets loads = hot_plate(3, kStretch);
   for (fem::EslSet& set : loads.sets) {
@@ -181,7 +182,7 @@ TEST(HeldEnd, TakingMaterialOffRelievesHeldHeat) {
   EXPECT_LT((value.d_stiffness - value.d_held).norm(), 1e-14 * value.d_held.norm());
   EXPECT_NEAR(value.d_stiffness.dot(k), value.f, kGivesWay * value.f);
   EXPECT_LT(value.d_stiffness.dot(k), value.f);
-  // A hold more is energy more.
+  // An additional constraint increases the energy.
   for (fem::EslSet& set : loads.sets) set.held_end_stretch = 0;
   ComplianceEvaluator(loads, kSection, {}, {}, {}).evaluate(k, k, free);
   EXPECT_GT(value.f, 1.05 * free.f);
@@ -214,7 +215,7 @@ TEST(HeldEnd, RemaindersAreOfSecondOrder) {
     ComplianceEvaluator compliance(loads, kSection, {definition}, k0, m0);
     ComplianceEvaluator::Value value;
     compliance.evaluate(k, m, value);
-    // Along ln k and ln m.
+    // The derivative is taken along ln k and ln m.
     const VectorXd p = random_factors(kGrid, 0.1, 25), r = random_factors(kGrid, 0.1, 26);
     const double slope =
         value.d_stiffness.dot(k.cwiseProduct(p)) + value.d_mass.dot(m.cwiseProduct(r));
@@ -243,7 +244,8 @@ TEST(HeldEnd, DerivativesAgreeWithDifferences) {
     compliance.evaluate(other, m, plus);
     other(c) = k(c) - step;
     compliance.evaluate(other, m, minus);
-    // Differences of f lose 1e-12 of it; their own error is of the step squared.
+    // Differences of f lose 1e-12 of f to round-off; their own error is of the order of the step
+    // squared.
     EXPECT_NEAR((plus.f - minus.f) / (2 * step), value.d_stiffness(c),
                 1e-5 * std::abs(value.d_stiffness(c)) + 1e-11 * value.f / step)
         << c;
@@ -252,7 +254,7 @@ TEST(HeldEnd, DerivativesAgreeWithDifferences) {
 
 // ------------------------------------------------------------ loads
 
-// Static analysis at the design of the motion returns its deformation.
+// Static analysis at the design of the motion must return the deformation of the motion.
 TEST(HeldEnd, StiffnessLoadsReturnTheDeformation) {
   const fem::EslSets loads = held_plate(4);
   const VectorXd k = random_factors(kGrid, 1e-3, 10);
@@ -264,8 +266,8 @@ TEST(HeldEnd, StiffnessLoadsReturnTheDeformation) {
   }
 }
 
-// One right-hand side for each root column and ratio of what is held where; none for loads that
-// hold nothing.
+// There is one right-hand side for each root column and each ratio of the held stretches, and none
+// for loads without held expansion.
 TEST(HeldEnd, LoadsOfOneKindShareTheirGrowth) {
   fem::EslSets loads = hot_plate(12, kStretch);
   const auto n = [&] {
@@ -285,21 +287,21 @@ TEST(HeldEnd, RefusesWhatItDoesNotHold) {
   const VectorXd ones = VectorXd::Ones(kGrid.n_cells());
   fem::EslSets loads = hot_plate(2, kStretch);
   loads.sets[1].held_end_stretch = kStretch;
-  EXPECT_TRUE(says(error_of(Error::Kind::input,
-                            [&] {
-                              ComplianceEvaluator(loads, kSection,
-                                                  {LoadDefinition::frozen, Support::far_end}, ones,
-                                                  ones);
-                            }),
-                   "far edge"));
+  EXPECT_TRUE(mentions(error_of(Error::Kind::input,
+                                [&] {
+                                  ComplianceEvaluator(loads, kSection,
+                                                      {LoadDefinition::frozen, Support::far_end},
+                                                      ones, ones);
+                                }),
+                       "far edge"));
   loads.sets[1].held_end_stretch = std::nan("");
-  EXPECT_TRUE(
-      says(error_of(Error::Kind::input, [&] { ComplianceEvaluator(loads, kSection, {}, {}, {}); }),
-           "load 1: a thermal stretch"));
+  EXPECT_TRUE(mentions(
+      error_of(Error::Kind::input, [&] { ComplianceEvaluator(loads, kSection, {}, {}, {}); }),
+      "load 1: a thermal stretch"));
   for (const double bad : {-1.0, std::nan("")})
     EXPECT_TRUE(
-        says(error_of(Error::Kind::input, [&] { fem::StaticSolver(kGrid, kSection, 0, bad); }),
-             "stiffness of an edge"));
+        mentions(error_of(Error::Kind::input, [&] { fem::StaticSolver(kGrid, kSection, 0, bad); }),
+                 "stiffness of an edge"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Heat in the design problem: Taylor tests of every derivative up to the variables
-// of the design; loads of hot plates from the state of a motion, whose strain energy is that of the
-// statics or, where nothing is held, none.
+// Shows that heat in the design problem is correct: Taylor tests of every derivative up to the
+// variables of the design; loads of hot plates from the state of a motion, whose strain energy is
+// that of the static analysis, or zero if nothing is held.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,8 @@ const Choice kChoices[] = {
     {"stiffness_moving_root_held", LoadDefinition::stiffness, Support::moving_root, false},
     {"stiffness_far_end_held", LoadDefinition::stiffness, Support::far_end, false}};
 
-/// Cell factors along a line s: exp of a sine (stiffness, 1e-3 to 1), 0.02 to 1 (mass).
+/// Scale factors along a line s: exponential of a sine (stiffness, 1e-3 to 1), and 0.02 to 1
+/// (mass).
 struct Line {
   VectorXd phase, speed;
 
@@ -60,7 +61,7 @@ struct Line {
   }
 };
 
-/// Order of the remainder of f(s) at 0 with slope df, from 3e-3 to 3e-6.
+/// Returns the order of the remainder of f(s) at 0 with derivative df, for steps from 3e-3 to 3e-6.
 double taylor_order(const std::function<double(double)>& f, double df) {
   const auto of_x = [&](const VectorXd& x) { return f(x[0]); };
   return optim::taylor_test(of_x, VectorXd::Constant(1, df), VectorXd::Zero(1), VectorXd::Ones(1),
@@ -104,7 +105,7 @@ TEST_P(HotLoads, RemaindersAreOfSecondOrder) {
   }
 }
 
-// Heat and loads have a say of the same size in all this.
+// Heat and loads contribute similarly to the compliance, so that these tests are sensitive to both.
 TEST(HotCompliance, TheTestsWeighHeatAndLoadsAlike) {
   const Line line(1);
   for (const VectorXd& k : {line.stiffness(0), VectorXd(VectorXd::Ones(kGrid.n_cells()))}) {
@@ -120,14 +121,15 @@ TEST(HotCompliance, TheTestsWeighHeatAndLoadsAlike) {
 
 // ------------------------------------------------------------ from dynamics
 
-/// A hot plate of 12 x 8 elements, small ones at its root, in a hub that is somewhere, at rest; its
-/// root edge keeps its width, and all else is in equilibrium to first order: s = 1 + a, r = o + R
-/// (s (X, Y) + w) with K_ff w_f = -K_fc w_c of the plate's own tangent. With `edge_grows` w = 0.
+/// A static hot plate of 12 x 8 elements, refined towards its root, in a hub at an arbitrary
+/// position. Its root edge keeps its width, and the rest is in equilibrium to first order: s = 1 +
+/// a, r = o + R (s (X, Y) + w) with K_ff w_f = -K_fc w_c and the stiffness matrix of the plate.
+/// With `edge_grows` w = 0.
 struct HotDynamics {
   double a;
   fem::Workspace model;
   fem::State x;
-  fem::Growth growth;
+  fem::MovingRoot growth;
   double strain_energy = 0;  // s³ U_cold(q / s), fem/README.md, Heat
 
   HotDynamics(bool edge_grows, double stretch) : a(stretch) {
@@ -169,7 +171,7 @@ struct HotDynamics {
                                          lines(-0.05, 0.05, 8, 1)),
         kSection, std::move(terms));
   }
-  /// Nine nodes at the root: r and r_n are held, as by a weld.
+  /// Returns w: at the nine nodes of the root, r and r_n are held as by a weld.
   VectorXd held_edge() {
     fem::SparseMatrix sparse;
     model.kkt(x, {}, {1, 0, 0}, 1, sparse);
@@ -191,11 +193,12 @@ fem::EslSets load_of(HotDynamics& hot, const Grid& grid) {
   return {grid, {equivalent_static_load(hot.model, hot.x, hot.growth, grid, {}, {}, {})}};
 }
 
-// Verification of a design: 1/2 w . K w against the strain energy of the motion, and the
-// deformation, with another element, by another method. The stress at the corners of the edge is
-// singular: energies converge with about the first order of the cell size, from above.
+// 1/2 w . K w is compared with the strain energy of the motion, and the static deformation with
+// that of the motion, which was computed with another element and another method. The stress at the
+// corners of the held edge is singular, therefore energies converge from above with about the first
+// order of the cell size.
 TEST(HotDynamicsLoads, AnEdgeThatIsHeldHasTheStaticAnswer) {
-  const double a = 1e-5;  // linear statics is compared
+  const double a = 1e-5;  // small, because linear statics is compared
   HotDynamics hot(false, a);
   std::vector<double> ratios;
   for (const int fine : {1, 2, 4}) {
@@ -217,7 +220,7 @@ TEST(HotDynamicsLoads, AnEdgeThatIsHeldHasTheStaticAnswer) {
   EXPECT_NEAR(ratios[2], 1, 0.01);
 }
 
-// Free growth, all the way from the state.
+// Free expansion, computed from the state of the motion, gives no static load.
 TEST(HotDynamicsLoads, FreeGrowthHasNoAnswer) {
   HotDynamics free(true, 8e-3), held(false, 8e-3);
   const fem::EslSets loads = load_of(free, kGrid), others = load_of(held, kGrid);
@@ -229,7 +232,7 @@ TEST(HotDynamicsLoads, FreeGrowthHasNoAnswer) {
 
 // ------------------------------------------------------------ design problems
 
-/// Both ends welded to walls, pulled at the middle, at three temperatures.
+/// Returns a plate with both ends welded to walls, pulled at the middle, at three temperatures.
 ComplianceEvaluator both_ends_held() {
   std::vector<LoadCase> cases;
   for (int l = 0; l < 3; ++l)
@@ -238,14 +241,14 @@ ComplianceEvaluator both_ends_held() {
                              true);
 }
 
-struct Whole {
+struct FullProblem {
   Design design;
   Ersatz ersatz;
   ComplianceEvaluator turning;
   ComplianceEvaluator resting;
   MmcProblem of_turning, of_resting;
 
-  explicit Whole(const ResponseRow& row = kComplianceSum)
+  explicit FullProblem(const ResponseRow& row = kComplianceSum)
       : design(kGrid, random_layout(7), kScale),
         ersatz(kGrid, tdf_settings().alpha, strip(), {}),
         turning(hot_plate(4, kStretch), kSection, {}, {}, {}),
@@ -258,14 +261,14 @@ struct Whole {
 
 TEST(HotProblem, GradientsPassTheTaylorTest) {
   for (const ResponseRow* of : {&kComplianceSum, &kComplianceWorst}) {
-    Whole whole(*of);
+    FullProblem whole(*of);
     for (MmcProblem* problem : {&whole.of_turning, &whole.of_resting}) {
       const bool sum = of == &kComplianceSum;
       const VectorXd x = problem->start();
-      const optim::Response at = problem->evaluate(x);
+      const optim::ProblemValues at = problem->evaluate(x);
       for (Eigen::Index row = sum ? -1 : 1; row < (sum ? 0 : at.g.size()); ++row) {
         const auto f = [&](const VectorXd& y) {
-          const optim::Response r = problem->evaluate(y);
+          const optim::ProblemValues r = problem->evaluate(y);
           return row < 0 ? r.f : r.g[row];
         };
         const VectorXd df = row < 0 ? at.df : VectorXd(at.dg.row(row));
@@ -278,28 +281,28 @@ TEST(HotProblem, GradientsPassTheTaylorTest) {
 }
 
 TEST(HotProblem, EveryEntryAgreesWithDifferences) {
-  Whole whole;
+  FullProblem whole;
   const VectorXd unit = whole.unit();
   for (MmcProblem* problem : {&whole.of_turning, &whole.of_resting}) {
     const VectorXd x = problem->start();
-    const optim::Response at = problem->evaluate(x);
+    const optim::ProblemValues at = problem->evaluate(x);
     const double largest = at.df.cwiseProduct(unit).cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       VectorXd d = VectorXd::Zero(x.size());
       d[i] = 1e-3 * unit[i];
       const double plus = problem->evaluate(x + d).f, minus = problem->evaluate(x - d).f;
-      // See mmc_problem_test: a jump of the second derivative at the edge of the band.
+      // A jump of the second derivative at the edge of the band, see mmc_problem_test.
       EXPECT_NEAR((plus - minus) / 2e-3, at.df[i] * unit[i], 1e-3 * largest) << i;
     }
   }
 }
 
-// Bodies that share mass: the hot one's energy has its part in the sum.
+// For bodies that share mass, the sum includes the energy of the hot body.
 TEST(HotProblem, SharedMassPassesTheTaylorTest) {
-  Whole whole;
+  FullProblem whole;
   SharedProblem shared({{&whole.of_turning, 2.0}, {&whole.of_resting, 1.0}});
   const VectorXd x = shared.start();
-  const optim::Response at = shared.evaluate(x);
+  const optim::ProblemValues at = shared.evaluate(x);
   EXPECT_EQ(at.f, std::log(whole.of_turning.compliance() + whole.of_resting.compliance()));
   const auto f = [&](const VectorXd& y) { return shared.evaluate(y).f; };
   VectorXd unit(x.size());

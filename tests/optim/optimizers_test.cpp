@@ -1,5 +1,6 @@
-// Every optimizer of the table finds the published optima of small problems, by its own rules and
-// with the KKT residual that we compute; the same run twice takes the same way.
+// Shows that every optimizer of the table finds the published optima of small problems, by its own
+// criterion and by the KKT residual of this program, and that a repeated run takes the identical
+// path.
 
 #include <gtest/gtest.h>
 
@@ -19,9 +20,9 @@ class EveryOptimizer : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryOptimizer, FindsTheKnownOptimum) {
   const Settings settings = for_small_problems(GetParam());
-  // Near the optimum, f is off by the multipliers times feasibility (1e-7) and by the KKT residual
-  // times the distance: 1e-5 of f at worst, asked for is 1e-4, and 1e-6 where the KKT residual is
-  // 1e-8.
+  // Near the optimum the error of f is the multipliers times the feasibility (1e-7) plus the KKT
+  // residual times the distance: at most 1e-5 of f, tested with 1e-4; 1e-6 where the KKT residual
+  // is 1e-8.
   const double tolerance = GetParam() == "ipopt" ? 1e-6 : 1e-4;
   for (Analytic& problem : all_problems()) {
     SCOPED_TRACE(problem.name);
@@ -39,8 +40,8 @@ TEST_P(EveryOptimizer, FindsTheKnownOptimum) {
   }
 }
 
-// With the defaults for structures (small steps from the first one on), on two problems whose
-// starts are about a unit from the optimum. HS76 ends at a bound.
+// With the defaults for structures (small steps from the first one on), the problems start about
+// one unit from the optimum. HS76 ends at a bound.
 TEST_P(EveryOptimizer, FindsTheOptimumWithItsDefaults) {
   for (Analytic problem : {cantilever(), hock_schittkowski_76(), many_bars(1000)}) {
     SCOPED_TRACE(problem.name);
@@ -62,8 +63,8 @@ TEST_P(EveryOptimizer, FindsTheOptimumWithItsDefaults) {
         << to_string(result.stop) << ": " << result.message;
     EXPECT_LE(result.violation, settings.feasibility);
     EXPECT_EQ(result.iterations, rows);
-    // mma moves by the limit; NLopt crosses its box from trial to trial: twice the limit, and half
-    // as much again with nlopt_mma.
+    // mma moves at most by the move limit. NLopt crosses its box from trial to trial: twice the
+    // limit, and 1.5 times as much with nlopt_mma.
     if (GetParam() == "mma") {
       EXPECT_LE(largest_change, settings.move_limit * (1 + 1e-12));
     }
@@ -88,14 +89,14 @@ TEST_P(EveryOptimizer, TakesTheSameWayTwice) {
   for (size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k], second[k]) << k;  // bit for bit
 }
 
-/// Rosenbrock's valley inside a disc of radius² 1.5: min 100 (y - x²)² + (1 - x)².
+/// Rosenbrock's function inside a disc of radius² 1.5: min 100 (y - x²)² + (1 - x)².
 class Valley final : public Analytic {
  public:
   Valley()
       : Analytic(
             "valley in a disc", VectorXd(Eigen::Vector2d(-2, -2)), VectorXd(Eigen::Vector2d(2, 2)),
             VectorXd(Eigen::Vector2d(-1, 0.6)), 1,
-            [](const VectorXd& x, Response& r) {
+            [](const VectorXd& x, ProblemValues& r) {
               const double rise = x[1] - x[0] * x[0];
               r.f = 100 * rise * rise + (1 - x[0]) * (1 - x[0]);
               r.df << -400 * x[0] * rise - 2 * (1 - x[0]), 200 * rise;
@@ -116,14 +117,14 @@ class Valley final : public Analytic {
   int curvatures = 0;
 };
 
-// On the disc the valley's floor is left for its side: x from Newton's method on the KKT
-// conditions, written out here. Second derivatives are asked for when `exact` says so, and the
-// residual then falls faster than by any factor.
+// The optimum lies on the disc, beside the floor of the valley. Reference: x from Newton's method
+// on the KKT conditions, written out here. Second derivatives are evaluated only with `exact`, and
+// then fewer iterations are needed.
 TEST(Ipopt, ConvergesQuadraticallyWithSecondDerivatives) {
   Eigen::Vector3d z(0.9, 0.8, 0.1);  // x, y, λ
   for (int step = 0; step < 20; ++step) {
     Valley v;
-    const Response r = v.evaluate(z.head<2>());
+    const ProblemValues r = v.evaluate(z.head<2>());
     Eigen::Matrix3d K = Eigen::Matrix3d::Zero();
     K.topLeftCorner<2, 2>() = v.curvature(z.head<2>(), 1, z.tail<1>());
     K.topRightCorner<2, 1>() = r.dg.transpose();
@@ -148,7 +149,7 @@ TEST(Ipopt, ConvergesQuadraticallyWithSecondDerivatives) {
   EXPECT_LT(iterations[1], iterations[0]);
 }
 
-// An optimizer object holds nothing of its last run.
+// An optimizer object keeps nothing of its previous run.
 TEST_P(EveryOptimizer, CanBeUsedTwice) {
   const auto optimizer = make_optimizer(for_small_problems(GetParam()));
   Analytic problem = two_bar_truss();
@@ -160,13 +161,14 @@ TEST_P(EveryOptimizer, CanBeUsedTwice) {
   EXPECT_EQ(first.iterations, again.iterations);
 }
 
-// Bounds alone: min Σ (x_j - t_j)² over [0, 1] with t outside for some, and one variable fixed.
+// Bounds only: min Σ (x_j - t_j)² over [0, 1] with t outside for some variables, and one fixed
+// variable.
 TEST_P(EveryOptimizer, SolvesProblemsWithoutConstraintsAndWithFixedVariables) {
   const VectorXd target = Eigen::Vector4d(-0.5, 0.3, 1.7, 0.9);
   Analytic problem(
       "bounds only", VectorXd(Eigen::Vector4d(0, 0, 0, 0.4)),
       VectorXd(Eigen::Vector4d(1, 1, 1, 0.4)), VectorXd(Eigen::Vector4d(0.5, 0.5, 0.5, 0.4)), 0,
-      [&](const VectorXd& x, Response& r) {
+      [&](const VectorXd& x, ProblemValues& r) {
         r.f = (x - target).squaredNorm();
         r.df = 2 * (x - target);
       },
@@ -177,13 +179,13 @@ TEST_P(EveryOptimizer, SolvesProblemsWithoutConstraintsAndWithFixedVariables) {
   EXPECT_LE(result.kkt, 1e-5);
 }
 
-// Started where the constraint does not hold (g = 11.6), it comes back feasible. NLopt inside its
-// box: without one, its curvatures grow with the first g and hardly fall again.
+// The start violates the constraint (g = 11.6); the result must be feasible. NLopt uses its box
+// here: without it, its curvatures grow with the first g and hardly decrease again.
 TEST_P(EveryOptimizer, StartsFromAnInfeasibleDesign) {
   Analytic good = cantilever();
   Analytic problem(
       "infeasible start", good.lower(), good.upper(), VectorXd::Constant(5, 2), 1,
-      [&](const VectorXd& x, Response& r) { r = good.evaluate(x); }, good.optimum);
+      [&](const VectorXd& x, ProblemValues& r) { r = good.evaluate(x); }, good.optimum);
   Settings settings = for_small_problems(GetParam());
   settings.options.erase("box");
   const Result result = make_optimizer(settings)->minimize(problem, {});
@@ -194,12 +196,14 @@ TEST_P(EveryOptimizer, StartsFromAnInfeasibleDesign) {
 INSTANTIATE_TEST_SUITE_P(Table, EveryOptimizer, ::testing::ValuesIn(optimizer_names()),
                          [](const auto& info) { return info.param; });
 
-// The collection itself: printed optima, and gradients of order two beside differences.
+// The problems themselves are correct: optima as printed, and gradients of order two compared with
+// differences.
 TEST(Problems, OptimaAreThePrintedOnes) {
   EXPECT_NEAR(cantilever().optimum, 1.340, 5e-4);
   const VectorXd boxes = cantilever().solution;
   const double printed[] = {6.0160, 5.3092, 4.4943, 3.5015, 2.1527};
-  // The printed x belongs to an f of 1.33996, 2e-6 above the optimum: x is off by its square root.
+  // The printed x has f = 1.33996, 2e-6 above the optimum; the error of x is of the order of the
+  // square root.
   for (int j = 0; j < 5; ++j) EXPECT_NEAR(boxes[j], printed[j], 5e-3);
   EXPECT_NEAR(two_bar_truss().optimum, 1.51, 5e-3);
   EXPECT_NEAR(two_bar_truss().solution[0], 1.41, 5e-3);
@@ -218,28 +222,31 @@ TEST(Problems, GradientsAreRight) {
     const VectorXd& x = problem.published_start();
     VectorXd direction(n);
     for (int j = 0; j < n; ++j) direction[j] = std::cos(1.0 + 2 * j);
-    const Response r = problem.evaluate(x);
+    const ProblemValues r = problem.evaluate(x);
     const auto order = [&](auto value, const VectorXd& gradient) {
       return taylor_test([&](const VectorXd& at) { return value(problem.evaluate(at)); }, gradient,
-                         x, direction, 1e-2, 3, 1e-14)  // sums of a thousand: more round-off
+                         // sums of a thousand terms have more round-off
+                         x, direction, 1e-2, 3, 1e-14)
           .order;
     };
-    // Linear functions have no remainder: their order is infinite. From 1.95 on it is second.
-    EXPECT_GT(order([](const Response& at) { return at.f; }, r.df), 1.95);
+    // Linear functions have no remainder, their order is infinite. An order above 1.95 counts as
+    // second order.
+    EXPECT_GT(order([](const ProblemValues& at) { return at.f; }, r.df), 1.95);
     for (int i = 0; i < problem.n_constraints(); ++i) {
-      EXPECT_GT(order([i](const Response& at) { return 1 + at.g[i]; }, r.dg.row(i)), 1.95) << i;
+      EXPECT_GT(order([i](const ProblemValues& at) { return 1 + at.g[i]; }, r.dg.row(i)), 1.95)
+          << i;
     }
   }
 }
 
-// Approximations have the gradients of their functions: an optimum stays where it is. Both
-// gradients have entries of both signs, min (x - 2)² + (y + 1)² for x - y <= 1 at (1, 0): parts for
-// rising and for falling functions that do not belong together move it.
+// The approximations have the gradients of their functions, therefore an optimum is kept. Both
+// gradients have entries of both signs: min (x - 2)² + (y + 1)² for x - y <= 1 at (1, 0).
+// Inconsistent terms for increasing and decreasing functions would move it.
 TEST(Mma, StaysAtAnOptimum) {
   for (const char* name : {"mma", "gcmma"}) {
     Analytic problem(
         "optimum", Vec2(-3, -3), Vec2(3, 3), Vec2(1, 0), 1,
-        [](const VectorXd& x, Response& r) {
+        [](const VectorXd& x, ProblemValues& r) {
           r.f = (x[0] - 2) * (x[0] - 2) + (x[1] + 1) * (x[1] + 1);
           r.df = Vec2(2 * (x[0] - 2), 2 * (x[1] + 1));
           r.g[0] = x[0] - x[1] - 1;
@@ -251,13 +258,14 @@ TEST(Mma, StaysAtAnOptimum) {
     settings.kkt_tolerance = 0;
     const Result result = make_optimizer(settings)->minimize(problem, {});
     EXPECT_EQ(result.iterations, 5) << name << ": " << result.message;
-    // To the tolerance of the subproblem.
+    // tolerance of the subproblem
     EXPECT_LT((result.x - problem.start()).norm(), 1e-5) << name;
   }
 }
 
-// Iterates of gcmma from a feasible start stay feasible and never get worse: every approximation
-// lies above its function at the accepted point. (To the round-off of the subproblem.)
+// From a feasible iterate on, the iterates of gcmma stay feasible and never get worse, because
+// every approximation lies above its function at the accepted point (up to the round-off of the
+// subproblem).
 TEST(Gcmma, StaysFeasibleAndFalls) {
   for (Analytic& problem : all_problems()) {
     SCOPED_TRACE(problem.name);

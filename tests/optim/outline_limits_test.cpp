@@ -1,5 +1,6 @@
-// Widths of narrow places and how they change with components: against distances that follow from
-// straight flanks and crossings, and against widths measured anew of moved components.
+// Shows that widths at violations of the minimum length scale and their derivatives with respect to
+// components are correct: against distances that follow from straight flanks and crossings, and
+// against measured widths of moved components.
 
 #include "optim/mmc/length_scale/outline_limits.h"
 
@@ -25,89 +26,94 @@ BodyProblem problem_of(const std::vector<Component>& components) {
   return p;
 }
 
-NarrowPlace narrowest(const BodyProblem& p, const std::vector<Component>& components, bool solid,
-                      double limit) {
+LengthScaleViolation narrowest(const BodyProblem& p, const std::vector<Component>& components,
+                               bool solid, double limit) {
   const auto regions = regions_of(p, components, kOutlineTolerance * p.grid.dx());
-  for (const NarrowPlace& place : narrow_places_of(p, regions, limit))
-    if (place.solid == solid) return place;
+  for (const LengthScaleViolation& location : length_scale_violations_of(p, regions, limit))
+    if (location.solid == solid) return location;
   ADD_FAILURE() << "no narrow place";
   return {};
 }
 
-double slope(const WidthSlope& w, int component, Parameter p) {
+double slope(const WidthGradient& w, int component, Parameter p) {
   return w.slope[Component::kParameters * component + p];
 }
 
-/// The sides of bars are straight in their middle: (x/L)^6 there is below 1e-3.
-TEST(WidthSlope, OfASlitIsThatOfTwoFlanks) {
+/// The sides of bars are straight in their middle, where (x/L)^6 is below 1e-3.
+TEST(WidthGradient, OfASlitIsThatOfTwoFlanks) {
   const std::vector<Component> bars = {bar({0.3, 0.02}, 0.2, 0, 0.012),
                                        bar({0.3, -0.015}, 0.2, 0, 0.015)};
   const BodyProblem p = problem_of(bars);
-  const NarrowPlace slit = narrowest(p, bars, false, 0.02);
-  const WidthSlope w = width_slope(p, bars, slit);
+  const LengthScaleViolation slit = narrowest(p, bars, false, 0.02);
+  const WidthGradient w = width_gradient(p, bars, slit);
   EXPECT_NEAR(w.width, 0.008, 1e-6);
   EXPECT_NEAR(slope(w, 0, Y0), 1, 1e-3);
   EXPECT_NEAR(slope(w, 1, Y0), -1, 1e-3);
   EXPECT_NEAR(slope(w, 0, X0), 0, 1e-3);
-  for (const int k : {0, 1}) {  // half-thicknesses of the profile add up to its change
+  for (const int k : {0, 1}) {  // the three half-thicknesses add up to the change of the profile
     EXPECT_NEAR(slope(w, k, c1) + slope(w, k, c2) + slope(w, k, c3), -1, 1e-3);
     const double arm = slit.center.x() - 0.3;
     EXPECT_NEAR(slope(w, k, angle), k == 0 ? arm : -arm, 1e-3 * 0.2);
   }
 }
 
-/// Two equal bars that cross at an angle 2 β: what is between two of their reflex corners is
-/// 2 g / cos β wide.
-TEST(WidthSlope, OfACrossingIsThatOfItsCorners) {
+/// Two equal bars cross at an angle 2 β. Reference: the width between two of their reflex corners
+/// is 2 g / cos β.
+TEST(WidthGradient, OfACrossingIsThatOfItsCorners) {
   const double g = 0.01, beta = 25 * std::numbers::pi / 180;
   const std::vector<Component> bars = {bar({0.3, 0}, 0.12, beta, g), bar({0.3, 0}, 0.12, -beta, g)};
   const BodyProblem p = problem_of(bars);
-  // The corners beside the acute angle, over and under the center.
+  // The corners next to the acute angle, above and below the centre.
   const double width = 2 * g / std::cos(beta);
-  const NarrowPlace place{NarrowPlace::Kind::neck, true, width, {0.3, 0}, {0.3, 0.5 * width},
-                          {0.3, -0.5 * width}};
-  const WidthSlope w = width_slope(p, bars, place);
+  const LengthScaleViolation location{LengthScaleViolation::Kind::neck,
+                                      true,
+                                      width,
+                                      {0.3, 0},
+                                      {0.3, 0.5 * width},
+                                      {0.3, -0.5 * width}};
+  const WidthGradient w = width_gradient(p, bars, location);
   EXPECT_NEAR(w.width, width, 1e-6);
-  // Both half-thicknesses by the same amount.
+  // Both half-thicknesses change by the same amount.
   double by_g = 0;
   for (const int k : {0, 1})
     for (const Parameter c : {c1, c2, c3}) by_g += slope(w, k, c);
   EXPECT_NEAR(by_g, 2 / std::cos(beta), 2e-3);
-  // One bar turns by an angle: β by half of it.
+  // If one bar turns by an angle, β changes by half of it.
   const double by_beta = 2 * g * std::sin(beta) / (std::cos(beta) * std::cos(beta));
   EXPECT_NEAR(slope(w, 0, angle), 0.5 * by_beta, 1e-5);
   EXPECT_NEAR(slope(w, 1, angle), -0.5 * by_beta, 1e-5);
-  // They move apart: the corners move alike.
+  // If the bars move apart, both corners move equally.
   EXPECT_NEAR(slope(w, 0, Y0), 0, 1e-3);
 }
 
-/// A bar along the border, half of it outside: its only flank that moves is the inner one.
-TEST(WidthSlope, CountsNoBorder) {
+/// A bar along the border, half of it outside: only its inner flank moves.
+TEST(WidthGradient, CountsNoBorder) {
   const std::vector<Component> bars = {bar({0.3, -0.05}, 0.2, 0, 0.012)};
   const BodyProblem p = problem_of(bars);
-  const NarrowPlace strip{NarrowPlace::Kind::bar, true,          0.012,
-                          {0.3, -0.044},          {0.3, -0.038}, {0.3, -0.05}};
-  const WidthSlope w = width_slope(p, bars, strip);
+  const LengthScaleViolation strip{
+      LengthScaleViolation::Kind::bar, true, 0.012, {0.3, -0.044}, {0.3, -0.038}, {0.3, -0.05}};
+  const WidthGradient w = width_gradient(p, bars, strip);
   EXPECT_NEAR(w.width, 0.012, 1e-6);
   EXPECT_NEAR(slope(w, 0, Y0), 1, 1e-3);
   EXPECT_NEAR(slope(w, 0, c3), 1, 1e-3);
 }
 
-/// The last disc of a free end moves with the bar: rigid motions leave its width, and what changes
-/// the end changes it as a disc that is looked for anew.
-TEST(WidthSlope, OfAFreeEndKnowsNoRigidMotion) {
+/// The last disc at a free end moves with the bar: rigid motions do not change its width, and a
+/// parameter that changes the end is compared with the width measured again.
+TEST(WidthGradient, OfAFreeEndKnowsNoRigidMotion) {
   const Component tapered{{0.3, 0.004}, 0.1, 0.2, 0.02, 0.008, 0.014};
   const BodyProblem p = problem_of({tapered});
   const auto end_of = [&](const Component& c) {
     const std::vector<Component> one = {c};
     const auto regions = regions_of(p, one, kOutlineTolerance * p.grid.dx());
-    NarrowPlace out;
-    for (const NarrowPlace& place : narrow_places_of(p, regions, 0.03))
-      if (place.kind == NarrowPlace::Kind::bar && place.center.x() > out.center.x()) out = place;
-    return std::pair(out, width_slope(p, one, out));
+    LengthScaleViolation out;
+    for (const LengthScaleViolation& location : length_scale_violations_of(p, regions, 0.03))
+      if (location.kind == LengthScaleViolation::Kind::bar && location.center.x() > out.center.x())
+        out = location;
+    return std::pair(out, width_gradient(p, one, out));
   };
-  const auto [place, w] = end_of(tapered);
-  ASSERT_GT(place.center.x(), 0.35);
+  const auto [location, w] = end_of(tapered);
+  ASSERT_GT(location.center.x(), 0.35);
   EXPECT_LT(w.width, 0.016);
   for (const Parameter q : {X0, Y0}) EXPECT_NEAR(slope(w, 0, q), 0, 1e-9) << q;
   EXPECT_NEAR(slope(w, 0, angle), 0, 1e-9);
@@ -117,17 +123,17 @@ TEST(WidthSlope, OfAFreeEndKnowsNoRigidMotion) {
   down.c2 -= h;
   const double found = (end_of(up).second.width - end_of(down).second.width) / (2 * h);
   EXPECT_GT(found, 1);
-  // The end takes another shape, which the mean motion of its contacts does not know: 1.41 where
-  // 1.87 was found. The sign and the size are what a constraint needs.
+  // The shape of the end changes, too, which the mean motion of the contacts does not contain: 1.41
+  // instead of the measured 1.87. A constraint needs only the sign and the magnitude.
   EXPECT_NEAR(slope(w, 0, c2), found, 0.3 * found);
 }
 
-/// Components in general position: limits of designs moved along a direction, against the slope.
-/// Outlines are polygons within t = 0.01 cells of the true ones; a Newton step leaves t² κ / 2 of
-/// them, 1e-6 m at curvatures κ of 200/m, and contacts that slide: 2 % of a slope at a step of 1
-/// mm.
+/// Components in general position: limits of designs moved along a direction are compared with the
+/// derivative. Outlines are polygons within t = 0.01 cells of the true outlines. A Newton step
+/// leaves an error of t² κ / 2, 1e-6 m at curvatures κ of 200/m, and contacts slide: 2 % of a
+/// derivative at a step of 1 mm.
 TEST(OutlineLimits, FollowTheWidthsOfMovedComponents) {
-  const Widths wanted{0.02, 0.01};
+  const MinimumWidths wanted{0.02, 0.01};
   int tested = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::vector<Component> some = random_layout(seed);
@@ -145,12 +151,14 @@ TEST(OutlineLimits, FollowTheWidthsOfMovedComponents) {
     const double h = 5e-4;
     limits.evaluate(moved(h), up);
     limits.evaluate(moved(-h), down);
-    // Rows have no lasting order: the narrowest place is one and the same while it stays alone.
+    // The rows have no fixed order. The largest violation stays the same one as long as no other
+    // becomes larger.
     Eigen::Index row, row_up, row_down;
     const double worst = here.g.maxCoeff(&row);
     const double change = (up.g.maxCoeff(&row_up) - down.g.maxCoeff(&row_down)) / (2 * h);
-    const bool kink = std::abs(up.g.maxCoeff() + down.g.maxCoeff() - 2 * worst) > 0.05 * h * change;
-    if (worst < 0 || kink) continue;
+    const bool discontinuity =
+        std::abs(up.g.maxCoeff() + down.g.maxCoeff() - 2 * worst) > 0.05 * h * change;
+    if (worst < 0 || discontinuity) continue;
     double by_slope = 0;
     for (size_t k = 0; k < some.size(); ++k)
       for (const Parameter c : {c1, c2, c3})
@@ -169,7 +177,8 @@ TEST(OutlineLimits, AreNoLimitsWhereAllIsWide) {
   limits.evaluate(one, found);
   EXPECT_LT(found.g.maxCoeff(), 0);
   EXPECT_EQ(found.dg.cwiseAbs().maxCoeff(), 0);
-  // What a superellipse of order 6, longer than the domain, has within it.
+  // Reference: the area within the domain of a superellipse of order 6 that is longer than the
+  // domain.
   double height = 0;
   constexpr int kStrips = 1000;
   for (int k = 0; k < kStrips; ++k) {

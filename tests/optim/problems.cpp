@@ -12,9 +12,9 @@ VectorXd vec(std::initializer_list<double> values) {
 
 }  // namespace
 
-// Weight of a cantilever of five hollow boxes under a displacement limit at its tip.
-// min 0.0624 Σ x,  61/x₁³ + 37/x₂³ + 19/x₃³ + 7/x₄³ + 1/x₅³ <= 1. Printed optimum: 1.340.
-// In closed form: x_j = (3 c_j λ / 0.0624)^¼ with the constraint active.
+// Weight of a cantilever of five hollow boxes with a displacement limit at its tip: min 0.0624 Σ x,
+// 61/x₁³ + 37/x₂³ + 19/x₃³ + 7/x₄³ + 1/x₅³ <= 1. Printed optimum: 1.340. In closed form: x_j = (3
+// c_j λ / 0.0624)^¼ with the constraint active.
 Analytic cantilever() {
   const VectorXd c = vec({61, 37, 19, 7, 1});
   const double root = c.array().pow(0.25).sum();
@@ -22,7 +22,7 @@ Analytic cantilever() {
   Analytic problem(
       "cantilever", VectorXd::Constant(5, 1), VectorXd::Constant(5, 10), VectorXd::Constant(5, 5),
       1,
-      [c](const VectorXd& x, Response& r) {
+      [c](const VectorXd& x, ProblemValues& r) {
         r.f = 0.0624 * x.sum();
         r.df.setConstant(0.0624);
         r.g[0] = (c.array() / x.array().cube()).sum() - 1;
@@ -33,8 +33,8 @@ Analytic cantilever() {
   return problem;
 }
 
-// Weight of a truss of two bars under stress limits; area x₁ and half distance of the feet x₂.
-// With the first constraint active, 16 x₂³ + x₂² = 1. Printed optimum: 1.51 at (1.41, 0.38).
+// Weight of a truss of two bars with stress limits; area x₁ and half distance of the feet x₂. With
+// the first constraint active, 16 x₂³ + x₂² = 1. Printed optimum: 1.51 at (1.41, 0.38).
 Analytic two_bar_truss() {
   double low = 0, high = 1;
   for (int k = 0; k < 100; ++k) {
@@ -45,7 +45,7 @@ Analytic two_bar_truss() {
   const double x1 = 0.124 * std::sqrt(1 + x2 * x2) * (8 + 1 / x2);
   Analytic problem(
       "two_bar_truss", vec({0.2, 0.1}), vec({4, 1.6}), vec({1.5, 0.5}), 2,
-      [](const VectorXd& x, Response& r) {
+      [](const VectorXd& x, ProblemValues& r) {
         const double a = x[0], b = x[1], w = std::sqrt(1 + b * b);
         r.f = a * w;
         r.df << w, a * b / w;
@@ -62,11 +62,11 @@ Analytic two_bar_truss() {
   return problem;
 }
 
-// Weight of a pyramid of eight bars of steel (7800 kg/m³) under (40, 20, 200) kN at its top,
-// stresses within ±100 N/mm², areas from 100 mm². Young's modulus cancels: all bars meet in the one
-// free node. Printed: 13.05 kg at the start and 11.23 kg at the optimum, which more than one set of
-// areas reaches. More digits: TRUSPYR2 of the CUTEst collection, this truss with limits on tension
-// only; at the optimum all bars are in tension.
+// Weight of a pyramid of eight steel bars (7800 kg/m³) under (40, 20, 200) kN at its top, stresses
+// within ±100 N/mm², areas of at least 100 mm². Young's modulus cancels, because all bars meet in
+// the only free node. Printed: 13.05 kg at the start and 11.23 kg at the optimum, which more than
+// one set of areas reaches. More digits: TRUSPYR2 of the CUTEst collection is this truss with
+// limits on tension only; at the optimum all bars are in tension.
 Analytic eight_bar_truss() {
   constexpr int kBars = 8;
   Eigen::Matrix<double, 3, kBars> bar;                   // [m], from the foot to the top
@@ -82,7 +82,7 @@ Analytic eight_bar_truss() {
           VectorXd::Constant(kBars, 50),
           VectorXd::Constant(kBars, 4),
           2 * kBars,
-          [=](const VectorXd& x, Response& r) {
+          [=](const VectorXd& x, ProblemValues& r) {
             const Eigen::Matrix3d K = e * x.cwiseQuotient(length).asDiagonal() * e.transpose();
             const Eigen::Matrix3d flexibility = K.inverse();
             const VectorXd stress = (e.transpose() * flexibility * load).cwiseQuotient(length);
@@ -96,12 +96,12 @@ Analytic eight_bar_truss() {
           11.2287408808};
 }
 
-// Numbers 35, 43, 76 and 100 of Hock & Schittkowski (1981), Test Examples for Nonlinear
-// Programming Codes; finite bounds, not active, where the source has none.
+// Numbers 35, 43, 76 and 100 of Hock & Schittkowski (1981), Test Examples for Nonlinear Programming
+// Codes. Where the source has no bounds, finite bounds are added that are not active.
 Analytic hock_schittkowski_35() {
   Analytic problem(
       "HS35", VectorXd::Zero(3), VectorXd::Constant(3, 10), VectorXd::Constant(3, 0.5), 1,
-      [](const VectorXd& x, Response& r) {
+      [](const VectorXd& x, ProblemValues& r) {
         r.f = 9 - 8 * x[0] - 6 * x[1] - 4 * x[2] + 2 * x[0] * x[0] + 2 * x[1] * x[1] + x[2] * x[2] +
               2 * x[0] * x[1] + 2 * x[0] * x[2];
         r.df << -8 + 4 * x[0] + 2 * x[1] + 2 * x[2], -6 + 4 * x[1] + 2 * x[0],
@@ -117,7 +117,7 @@ Analytic hock_schittkowski_35() {
 Analytic hock_schittkowski_43() {
   Analytic problem(
       "HS43", VectorXd::Constant(4, -10), VectorXd::Constant(4, 10), VectorXd::Zero(4), 3,
-      [](const VectorXd& x, Response& r) {
+      [](const VectorXd& x, ProblemValues& r) {
         const Eigen::Array4d s = x.array().square();
         r.f = s[0] + s[1] + 2 * s[2] + s[3] - 5 * x[0] - 5 * x[1] - 21 * x[2] + 7 * x[3];
         r.df << 2 * x[0] - 5, 2 * x[1] - 5, 4 * x[2] - 21, 2 * x[3] + 7;
@@ -136,7 +136,7 @@ Analytic hock_schittkowski_43() {
 Analytic hock_schittkowski_76() {
   Analytic problem(
       "HS76", VectorXd::Zero(4), VectorXd::Constant(4, 10), VectorXd::Constant(4, 0.5), 3,
-      [](const VectorXd& x, Response& r) {
+      [](const VectorXd& x, ProblemValues& r) {
         r.f = x[0] * x[0] + 0.5 * x[1] * x[1] + x[2] * x[2] + 0.5 * x[3] * x[3] - x[0] * x[2] +
               x[2] * x[3] - x[0] - 3 * x[1] + x[2] - x[3];
         r.df << 2 * x[0] - x[2] - 1, x[1] - 3, 2 * x[2] - x[0] + x[3] + 1, x[3] + x[2] - 1;
@@ -158,7 +158,7 @@ Analytic hock_schittkowski_100() {
           VectorXd::Constant(7, 10),
           vec({1, 2, 0, 4, 0, 1, 1}),
           4,
-          [](const VectorXd& x, Response& r) {
+          [](const VectorXd& x, ProblemValues& r) {
             const auto power = [&](int j, int p) { return std::pow(x[j], p); };
             r.f = power(2, 4) + 10 * power(4, 6) + 7 * power(5, 2) + power(6, 4) - 4 * x[5] * x[6] -
                   10 * x[5] - 8 * x[6] + std::pow(x[0] - 10, 2) + 5 * std::pow(x[1] - 12, 2) +
@@ -182,7 +182,7 @@ Analytic hock_schittkowski_100() {
           6.806300573};
 }
 
-// x_j = √(c_j / (λ a_j)) between its bounds; λ by bisection.
+// Closed form: x_j = √(c_j / (λ a_j)) between its bounds, with λ by bisection.
 Analytic many_bars(int n) {
   VectorXd a(n), c(n);
   for (int j = 0; j < n; ++j) {
@@ -202,7 +202,7 @@ Analytic many_bars(int n) {
   Analytic problem(
       "many_bars", VectorXd::Constant(n, 0.2), VectorXd::Constant(n, 0.7),
       VectorXd::Constant(n, 0.5), 1,
-      [a, c, n, limit](const VectorXd& at, Response& r) {
+      [a, c, n, limit](const VectorXd& at, ProblemValues& r) {
         r.f = (c.array() / at.array()).sum() / n;
         r.df = -c.array() / at.array().square() / n;
         r.g[0] = a.dot(at) / limit - 1;
@@ -231,16 +231,17 @@ Settings for_small_problems(const std::string& optimizer) {
   Settings s;
   s.name = optimizer;
   s.max_iterations = 600;
-  s.kkt_tolerance = optimizer == "ipopt" ? 1e-8 : 1e-6;  // ipopt has second-order information
+  s.kkt_tolerance = optimizer == "ipopt" ? 1e-8 : 1e-6;  // ipopt uses second-order information
   s.feasibility = 1e-7;
   s.rest.rows = 0;
-  s.move_limit = 1;  // the problems are smooth: nothing comes apart by a step of one unit
-  // Asymptotes half a unit away reach optima several units away soon; those that may come as near
-  // as 1e-4 do not swing about a minimum of large curvature (4 raa0 / asymin is larger).
+  s.move_limit = 1;  // the problems are smooth, and steps of one unit are allowed
+  // Asymptotes at half a unit reach optima several units away quickly. Asymptotes that may come as
+  // near as 1e-4 do not oscillate about a minimum of large curvature (4 raa0 / asymin is larger).
   if (optimizer == "mma" || optimizer == "gcmma") {
     s.options = {{"asyinit", 0.5}, {"asyincr", 1.2}, {"asydecr", 0.7}, {"asymin", 1e-4}};
   }
-  // No structure, no box; f and g are of the order of 1 already.
+  // The problems are no structures, therefore no box is used; f and g are already of the order of
+  // 1.
   if (optimizer.starts_with("nlopt")) s.options = {{"box", 0}, {"scale", 1}};
   return s;
 }

@@ -1,6 +1,6 @@
-// Every optimizer of the table reaches the published optima of Svanberg's trusses and cantilever
-// and of Hock & Schittkowski's problems with inequality constraints, from the published starts and
-// with one setting for all problems: to 1e-4 of f, Ipopt to 1e-6.
+// Shows that every optimizer of the table reaches the published optima of Svanberg's trusses and
+// cantilever and of Hock & Schittkowski's problems with inequality constraints, from the published
+// starts and with one setting for all problems: to 1e-4 of f, Ipopt to 1e-6.
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace {
 
 Settings for_published_problems(const std::string& optimizer) {
   Settings s = for_small_problems(optimizer);
-  // At a corner of as many active constraints as variables the KKT residual vanishes as far away
-  // as a constraint counts as active, 1e-4. Six digits are Ipopt's own matter: down to its
-  // complementarity of 1e-12.
+  // At a corner with as many active constraints as variables the KKT residual vanishes within 1e-4,
+  // the distance at which a constraint counts as active. Therefore Ipopt uses its own criterion for
+  // six digits, down to its complementarity of 1e-12.
   if (optimizer == "ipopt") s.kkt_tolerance = 0;
-  // In a wide box and long enough in each: number 11 starts so far outside of its constraint that
-  // without a box NLopt's curvatures never fall again.
+  // NLopt uses a wide box with many iterations per box: number 11 starts so far outside of its
+  // constraint that NLopt's curvatures would never decrease again without a box.
   if (optimizer.starts_with("nlopt")) s.options = {{"box", 5}, {"restart", 50}, {"scale", 1}};
   return s;
 }
@@ -29,8 +29,8 @@ class PublishedOptimum : public ::testing::TestWithParam<std::string> {};
 TEST_P(PublishedOptimum, IsReached) {
   const Settings settings = for_published_problems(GetParam());
   // The optima are printed with nine or ten digits. A violation of 1e-7 times multipliers of the
-  // order of one is far below both tolerances; what is left is how close to the active constraints
-  // an optimizer ends: KKT residuals count those within 1e-4 as active.
+  // order of one is far below both tolerances. The tolerance covers how close an optimizer comes to
+  // the active constraints: the KKT residual counts constraints within 1e-4 as active.
   const double tolerance = GetParam() == "ipopt" ? 1e-6 : 1e-4;
   for (Analytic& problem : published_problems()) {
     SCOPED_TRACE(problem.name);

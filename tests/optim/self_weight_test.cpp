@@ -1,5 +1,5 @@
-// Weight of a plate at rest that follows its design: a hanging column, superposition, Taylor's
-// test.
+// Shows that the weight of a static plate, which depends on its design, is correct: a hanging
+// column, superposition, Taylor's test.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,9 @@ std::vector<fem::HeldUnknown> held_edge(const Grid& grid, bool top) {
   return out;
 }
 
-// u(y) = rho g (L y - y^2 / 2) / E from the held top, at nodes of linear elements exactly, so that
-// F . u is the trapezoidal rule for rho g A u: C = rho^2 g^2 A (L^3 / 3 - L h^2 / 12) / E.
+// Reference: u(y) = rho g (L y - y^2 / 2) / E from the held top, which linear elements reproduce
+// exactly at their nodes. F . u is the trapezoidal rule for rho g A u: C = rho^2 g^2 A (L^3 / 3 - L
+// h^2 / 12) / E.
 TEST(SelfWeight, OfAHangingColumn) {
   const fem::PlaneSection section{0.02, 2e9, 0, 1800};
   const double g = 9.81, length = 2, width = 0.3;
@@ -32,7 +33,7 @@ TEST(SelfWeight, OfAHangingColumn) {
       weight * weight * area * (std::pow(length, 3) / 3 - length * h * h / 12) / 2e9;
   EXPECT_NEAR(column.sum(full, full), exact, 1e-10 * exact);
   EXPECT_NEAR(column.individual(full, full)[0], exact, 1e-10 * exact);
-  // Half of the mass and of the stiffness: half of the weight on half of the stiffness.
+  // Half of the mass and of the stiffness: half of the weight acts on half of the stiffness.
   EXPECT_NEAR(column.sum(0.5 * full, 0.5 * full), 0.5 * exact, 1e-10 * exact);
   EXPECT_FALSE(column.has_curvature());
 }
@@ -46,7 +47,7 @@ struct Bracket {
     plate.outside.assign(static_cast<size_t>(grid.n_cells()), 0);
     plate.outside[static_cast<size_t>(grid.cell(6, 4))] = 1;
   }
-  /// A roller at the right beside two held nodes at the left.
+  /// Returns the bracket with a roller at the right and two held nodes at the left.
   ComplianceEvaluator evaluator(std::span<const LoadCase> of, const Vec2& gravity) const {
     const std::vector<fem::HeldUnknown> held = {
         {grid.node(0, 0), 0}, {grid.node(0, 0), 1}, {grid.node(0, 5), 0}, {grid.node(7, 0), 1}};

@@ -1,4 +1,5 @@
-// Which design a search delivers, and what it says of how far that is.
+// Shows which design a search delivers, and that its verdict describes how far the design is from
+// an optimum.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +20,7 @@ test::Analytic largest_of_two() {
           at(3, 3),
           at(0.5, 0.1),
           3,
-          [](const VectorXd& x, Response& r) {
+          [](const VectorXd& x, ProblemValues& r) {
             r.f = x[1];
             r.df = at(0, 1);
             r.g = Eigen::Vector3d((x[0] - 1) * (x[0] - 1) + 1 - x[1], 2 - x[0] - x[1], x[0] - 1.5);
@@ -37,8 +38,8 @@ TEST(Search, RanksDesignsByTheObjectiveThatTheyAttain) {
   Search search(problem, settings, none);
   Point point = search.start();
   EXPECT_NEAR(attained_objective(point.response), 1.5, 1e-9);
-  // Beyond its own limit; at the optimum with a variable z that is too small; worse with all rows
-  // kept.
+  // The designs: beyond its limit; at the optimum, with a variable z that is too small; worse, with
+  // all rows satisfied.
   for (const VectorXd& x : {at(1.6, 0.5), at(1, 0.9), at(1.4, 1.2)}) {
     point.x = x;
     search.evaluate(x, point.response);
@@ -50,14 +51,14 @@ TEST(Search, RanksDesignsByTheObjectiveThatTheyAttain) {
   EXPECT_NEAR(violation(result.response), 0.1, 1e-12);
 }
 
-/// minimize x <= limit, from -10 on.
+/// minimize x subject to x <= limit, with the lower bound -10.
 test::Analytic line(double start, double limit) {
   return {"line",
           VectorXd::Constant(1, -10),
           VectorXd::Constant(1, 10),
           VectorXd::Constant(1, start),
           1,
-          [limit](const VectorXd& x, Response& r) {
+          [limit](const VectorXd& x, ProblemValues& r) {
             r.f = x[0];
             r.df = VectorXd::Ones(1);
             r.g = VectorXd::Constant(1, x[0] - limit);
@@ -66,7 +67,7 @@ test::Analytic line(double start, double limit) {
           -10};
 }
 
-/// The verdict after rows at these values of x, which is minimized.
+/// Returns the verdict after rows with these values of x, which is the objective.
 Verdict verdict_after(const std::vector<double>& values, double limit) {
   test::Analytic problem = line(values.front(), limit);
   const Settings settings;
@@ -81,7 +82,8 @@ Verdict verdict_after(const std::vector<double>& values, double limit) {
   return search.result().verdict;
 }
 
-/// The row at which a search stops by itself, of 100 rows that fall by so much each.
+/// Returns the row at which a search stops by itself, of at most 100 rows in which the objective
+/// decreases by `per_row`.
 int last_row(double per_row, double limit, bool plateau) {
   test::Analytic problem = line(1, limit);
   Settings settings;
@@ -119,8 +121,8 @@ TEST(Verdict, TellsPlateausFromDesignsOnTheirWay) {
   EXPECT_EQ(verdict_after({1, -10}, 5).kind, Verdict::Kind::converged);  // at its lower bound
 }
 
-// 30 rows in which the objective falls by less than 1e-3 end a search, of designs that keep to
-// their limits.
+// With `plateau`, 30 rows of feasible designs in which the objective decreases by less than 1e-3
+// end a search.
 TEST(Verdict, PlateauEndsASearchThatIsAskedTo) {
   EXPECT_EQ(last_row(3e-5, 5, true), 31);
   EXPECT_EQ(last_row(4e-5, 5, true), 100);
@@ -129,10 +131,10 @@ TEST(Verdict, PlateauEndsASearchThatIsAskedTo) {
 }
 
 TEST(Verdict, SaysItsNumbers) {
-  EXPECT_EQ(words_of({Verdict::Kind::unfinished, 0.04, 0.021}),
+  EXPECT_EQ(text_of({Verdict::Kind::unfinished, 0.04, 0.021}),
             "unfinished: the objective fell by 2.1 % over the last 20 iterations, KKT residual "
             "4.0e-02");
-  EXPECT_EQ(words_of({Verdict::Kind::stagnated, 0.04, 0}),
+  EXPECT_EQ(text_of({Verdict::Kind::stagnated, 0.04, 0}),
             "stagnated: the objective fell by less than 0.1 % over 30 iterations, KKT residual "
             "4.0e-02");
 }

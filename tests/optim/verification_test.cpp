@@ -1,4 +1,4 @@
-// Verification of outlines against beams, a hole, a corner, a spinning rod, and finer meshes.
+// Shows that verifications of outlines agree with closed forms, finer meshes and mirror images.
 #include "optim/verification/verification.h"
 
 #include <gtest/gtest.h>
@@ -15,10 +15,10 @@ std::vector<Vec2> rectangle(double x0, double y0, double x1, double y1) {
 }
 
 const fem::PlaneSection kUnit{1, 1, 0.3, 0};
-const Settings kCoarse{.size = 0.5, .reach = 0.1};
+const VerificationSettings kCoarse{.size = 0.5, .reach = 0.1};
 constexpr double kLength = 8;
 
-/// A cantilever 8 x 1 of unit modulus, clamped at x = 0, pulled down at its end.
+/// Returns a cantilever 8 x 1 of unit modulus, clamped at x = 0, with a force downwards at its end.
 Loads tip_load() {
   Loads out;
   out.supports.push_back({out.add(box_location({{0, 0}, {0, 1}})), true, true});
@@ -31,7 +31,7 @@ Loads tip_load() {
 
 const std::vector<Region> kBeam = {{rectangle(0, 0, kLength, 1), {}}};
 
-/// Compliance of unit force: bending, and shear with Cowper's coefficient.
+/// Returns the compliance under a unit force: bending, and shear with Cowper's coefficient.
 double timoshenko(double length) {
   const double nu = kUnit.poisson_ratio, inertia = 1. / 12, kappa = 10 * (1 + nu) / (12 + 11 * nu);
   return std::pow(length, 3) / (3 * inertia) + 2 * (1 + nu) * length / kappa;
@@ -43,14 +43,14 @@ TEST(OutlineVerification, CantileverIsTimoshenkos) {
   EXPECT_TRUE(found.converged);
   EXPECT_NEAR(found.compliance, timoshenko(kLength), 0.004 * timoshenko(kLength));
   EXPECT_LE(found.error, 0.001);
-  EXPECT_EQ(found.n_pieces, 1);
-  EXPECT_EQ(found.n_omitted_pieces, 0);
+  EXPECT_EQ(found.n_connected_regions, 1);
+  EXPECT_EQ(found.n_omitted_regions, 0);
   EXPECT_NEAR(found.area, kLength, 1e-12);
-  // Away from the clamp by 0.1: 6 (L - x) / h².
+  // Reference at 0.1 from the clamp: 6 (L - x) / h².
   EXPECT_NEAR(found.largest_stress, 6 * (kLength - 0.1), 0.05 * 6 * kLength);
 }
 
-/// A beam 20 x 1 with pins at the middle of its ends, which nothing clamps.
+/// Returns a beam 20 x 1 with pins at the middle of its ends and no clamp.
 Loads link_loads(bool floating, const Grid& grid) {
   Loads out;
   out.grid = grid;
@@ -64,8 +64,8 @@ Loads link_loads(bool floating, const Grid& grid) {
   return out;
 }
 
-// A link between two pins under its own inertia, M = q x (L - x) / 2, and one that a force at its
-// middle accelerates, M = P x² / (2 L) up to the middle: 2 U = ∫ M² / EI + ∫ V² / (κ G A).
+// Reference: a link on two pins under its own inertia, M = q x (L - x) / 2, and a free link with a
+// force at its middle, M = P x² / (2 L) up to the middle: 2 U = ∫ M² / EI + ∫ V² / (κ G A).
 TEST(OutlineVerification, LinksBetweenTwoPinsAreBeams) {
   const std::vector<Region> beam = {{rectangle(0, 0, 20, 1), {}}};
   const double L = 20, EI = 1. / 12, shear = 2 * (1 + kUnit.poisson_ratio) * 1.2;
@@ -76,7 +76,7 @@ TEST(OutlineVerification, LinksBetweenTwoPinsAreBeams) {
   section.density = 1;
   VectorXd acceleration = VectorXd::Zero(2 * grid.n_nodes());
   for (Eigen::Index k = 1; k < acceleration.size(); k += 2) acceleration[k] = 3;
-  const Settings settings{.tolerance = 0.001, .size = 0.5, .reach = 0.5};
+  const VerificationSettings settings{.tolerance = 0.001, .size = 0.5, .reach = 0.5};
 
   Loads pinned = link_loads(false, grid);
   pinned.loads.push_back({.name = "inertia", .acceleration = &acceleration});
@@ -89,13 +89,13 @@ TEST(OutlineVerification, LinksBetweenTwoPinsAreBeams) {
   push.name = "push";
   const Region border{rectangle(0, 0, 20, 1), {}};
   push.forces.push_back({floating.add(box_location({{9.9, 0}, {10.1, 1}})), {0, -2}});
-  push.acceleration = &acceleration;  // a motion as a whole bends nothing
+  push.acceleration = &acceleration;  // a uniform acceleration causes no bending
   const double bent = 4 * (std::pow(L, 3) / (320 * EI) + L * shear / 12);
   EXPECT_NEAR(verify_outline(beam, section, floating, settings).compliance, bent, 0.01 * bent);
 }
 
-// Pins press on the rims of bores: the compliance of a link that turns is that of its middle part
-// under centrifugal forces, and half a rim in front of each pin is pressed.
+// Pins press on the rims of bores of a rotating link: the forces are balanced, act on the half of
+// the rim in front of each pin, and carry the centrifugal force of the link.
 TEST(OutlineVerification, PinsPressOnTheRimsOfBores) {
   Loads loads;
   loads.grid = {.x0 = 0, .y0 = -1, .width = 12, .height = 2};
@@ -112,7 +112,7 @@ TEST(OutlineVerification, PinsPressOnTheRimsOfBores) {
   }
   VectorXd acceleration = VectorXd::Zero(2 * loads.grid.n_nodes());
   for (int k = 0; k < loads.grid.n_nodes(); ++k)
-    acceleration[2 * k] = -(k / 3);  // towards the first pin's end: -X
+    acceleration[2 * k] = -(k / 3);  // towards the end of the first pin, -X
   loads.loads.push_back({.name = "turning", .acceleration = &acceleration});
   fem::PlaneSection section = kUnit;
   section.density = 1;
@@ -133,13 +133,13 @@ TEST(OutlineVerification, PinsPressOnTheRimsOfBores) {
   }
   EXPECT_LT(sum.norm(), 1e-9 * pressed);
   EXPECT_LT(std::abs(moment), 1e-9 * pressed * 12);
-  // All of ρ x dA is carried by the first pin: 12² of the plate, less the bores.
+  // The first pin carries all of ρ x dA: 12² for the plate, minus the bores.
   const double bores = std::numbers::pi * 0.16 * (1 + 11);
   EXPECT_NEAR(pressed, 144 - bores, 0.02 * 144);
 }
 
-// Tension of a plate with a small hole: three times the stress far away, Kirsch's solution;
-// with a hole of a twentieth of the width 3.008, by Heywood's formula.
+// Tension of a plate with a small hole. Reference: three times the stress far away (Kirsch's
+// solution); for a hole of a twentieth of the width 3.008 (Heywood's formula).
 TEST(OutlineVerification, HoleHasThreeTimesTheStress) {
   std::vector<Vec2> hole;
   constexpr int kSides = 240;
@@ -174,8 +174,8 @@ Loads bracket_load() {
 const std::vector<Region> kBracket = {
     {{{0, 0}, {1, 0}, {1, 0.4}, {0.4, 0.4}, {0.4, 1}, {0, 1}}, {}}};
 
-// At a corner that reaches around by 270 degrees, and at the ends of a clamp, stresses have no
-// limit: the estimate holds there, too.
+// At a re-entrant corner of 270 degrees and at the ends of a clamp stresses have no limit; the
+// error estimate must hold there, too.
 TEST(OutlineVerification, EstimatesItsErrorAtACorner) {
   const auto at = [](double tolerance) {
     return verify_outline(kBracket, kUnit, bracket_load(),
@@ -193,9 +193,9 @@ TEST(OutlineVerification, EstimatesItsErrorAtACorner) {
   }
 }
 
-// A smooth field, uniform meshes: the energy that is missing falls with h⁴.
+// A smooth field on uniform meshes: the error of the energy decreases with h⁴.
 TEST(OutlineVerification, CompliancesConvergeWithOrderFour) {
-  // A square that spins about its corner, held by the two lines of symmetry.
+  // A square that rotates about its corner, held by its two lines of symmetry.
   const std::vector<Region> square = {{rectangle(0, 0, 1, 1), {}}};
   const fem::PlaneSection heavy{1, 1, 0.3, 1};
   Loads loads;
@@ -214,17 +214,17 @@ TEST(OutlineVerification, CompliancesConvergeWithOrderFour) {
   };
   const double exact = at(0.03).compliance;
   const OutlineVerification coarse = at(0.24), fine = at(0.08);
-  // Unstructured: by the mean size of triangles.
+  // The meshes are unstructured, therefore the order refers to the mean size of triangles.
   const double ratio = static_cast<double>(fine.mesh.triangles.size()) /
                        static_cast<double>(coarse.mesh.triangles.size());
   const double order =
       2 * std::log((exact - coarse.compliance) / (exact - fine.compliance)) / std::log(ratio);
   EXPECT_NEAR(order, 4, 0.6);
-  // Recovered stresses estimate what is missing.
+  // Recovered stresses estimate the error.
   EXPECT_NEAR(coarse.error * coarse.compliance / (exact - coarse.compliance), 1, 0.5);
 }
 
-/// A rod along x that spins about the origin, seen at rest: a = -ω² x.
+/// A rod along x that rotates about the origin, in the rotating frame: a = -ω² x.
 struct SpinningRod {
   Loads loads;
   VectorXd acceleration;
@@ -245,11 +245,11 @@ struct SpinningRod {
   SpinningRod(const SpinningRod&) = delete;
 };
 
-// Without Poisson's effect the rod is one-dimensional: N = ρ A (L² - x²) / 2, C = ∫ N² dx / (E A).
+// Reference for a rod without Poisson's effect: N = ρ A (L² - x²) / 2, C = ∫ N² dx / (E A).
 TEST(OutlineVerification, SpinningRodFromClampToClamp) {
   const double length = 2, area = 0.2;
   const fem::PlaneSection section{1, 7, 0, 3};
-  const std::vector<double> clamps = {0.5, 1.1, 0, 0.5};  // in any order, one of them twice
+  const std::vector<double> clamps = {0.5, 1.1, 0, 0.5};  // in any order, one of them two times
   const SpinningRod rod(length, clamps);
   const std::vector<Region> bar = {{rectangle(0, -0.1, length, 0.1), {}}};
   const OutlineVerification found =
@@ -267,7 +267,7 @@ TEST(OutlineVerification, SpinningRodFromClampToClamp) {
     sum += exact;
   }
   EXPECT_NEAR(found.compliance, sum, 1e-4 * sum);
-  // The worst load is mesh_loads to others, with what is behind its clamp held.
+  // The worst load is exported as mesh_loads, with the region behind its clamp held.
   ASSERT_EQ(found.mesh_loads.size(), 1u);
   EXPECT_EQ(found.mesh_loads[0].load, 2);
   double force = 0;
@@ -282,7 +282,7 @@ TEST(OutlineVerification, LoadsOfOneBodyAreThoseOfMany) {
   pull.weight = 3;
   pull.forces.push_back({two.add(box_location({{kLength, 0}, {kLength, 1}})), {5, 0}});
   two.loads.push_back(pull);
-  const Settings settings{.size = 0.5, .reach = 0.1};
+  const VerificationSettings settings{.size = 0.5, .reach = 0.1};
   const OutlineVerification both = verify_outline(kBeam, kUnit, two, settings);
   EXPECT_NEAR(both.compliance, both.compliances[0] + 3 * both.compliances[1],
               1e-12 * both.compliance);
@@ -305,7 +305,7 @@ TEST(OutlineVerification, PointsAreSpreadOverACell) {
   const Location inside = point_location({4, 0.5}, border, 0.1);
   EXPECT_TRUE(inside.lines.empty());
   ASSERT_EQ(inside.area.size(), 4u);
-  // Wherever the unit force is spread over the end, the beam bends alike.
+  // The beam bends equally wherever on its end the unit force is distributed.
   Loads loads = tip_load();
   loads.locations[1] = middle;
   const OutlineVerification found = verify_outline(kBeam, kUnit, loads, kCoarse);
@@ -319,15 +319,15 @@ TEST(OutlineVerification, PiecesThatNothingHoldsAreLeftOut) {
   regions.push_back({rectangle(3, 2, 4, 3), {}});
   const OutlineVerification alone = verify_outline(kBeam, kUnit, tip_load(), kCoarse);
   const OutlineVerification found = verify_outline(regions, kUnit, tip_load(), kCoarse);
-  EXPECT_EQ(found.n_pieces, 2);
-  EXPECT_EQ(found.n_omitted_pieces, 1);
+  EXPECT_EQ(found.n_connected_regions, 2);
+  EXPECT_EQ(found.n_omitted_regions, 1);
   EXPECT_NEAR(found.compliance, alone.compliance, 0.01 * alone.compliance);
   EXPECT_NEAR(found.area, kLength + 1, 1e-12);
 }
 
-// What is hot and held at the root of a part, with its far edge cold and held, is the mirror image
-// of what is hot and held at its far edge: a rigid motion apart. One is prescribed, the other one
-// is done by springs, over the gap between two legs as well.
+// A part that is hot and held at its root, with a cold far edge, is the mirror image of a part that
+// is hot and held at its far edge, except for a rigid motion. One edge is prescribed, the other one
+// is held by springs, also across the gap between two legs.
 TEST(OutlineVerification, HeldEdgeIsTheMirrorOfAHotClamp) {
   constexpr double kHot = 2e-3, kEnd = 2;
   const std::vector<Vec2> outer = {{0, -0.5}, {1, -0.4}, {kEnd, -0.6}, {kEnd, 0.3}, {1, 0.5},
@@ -354,13 +354,13 @@ TEST(OutlineVerification, HeldEdgeIsTheMirrorOfAHotClamp) {
   EXPECT_NEAR(hot_end, hot_root, 2e-3 * hot_root);
 }
 
-// A piece that could turn about its only hold is not held.
+// A region that can rotate about its only held point is not supported.
 TEST(OutlineVerification, LoadsOnLoosePiecesMakeTheComplianceInfinite) {
   const std::vector<Region> parts = {{rectangle(0, 0, 3, 1), {}}, {rectangle(4, 0, 8, 1), {}}};
   const OutlineVerification loose = verify_outline(parts, kUnit, tip_load(), kCoarse);
   EXPECT_EQ(loose.compliance, INFINITY);
   EXPECT_EQ(loose.unsupported_load, "tip");
-  EXPECT_EQ(loose.n_omitted_pieces, 1);
+  EXPECT_EQ(loose.n_omitted_regions, 1);
   Loads sliding = tip_load();
   sliding.supports[0].y = false;
   EXPECT_EQ(verify_outline(kBeam, kUnit, sliding, kCoarse).compliance, INFINITY);
@@ -370,9 +370,9 @@ TEST(OutlineVerification, LoadsOnLoosePiecesMakeTheComplianceInfinite) {
 }
 
 TEST(OutlineVerification, IsTheSameBitForBit) {
-  const Settings settings{.tolerance = 0.001, .size = 0.2, .reach = 0.02};
+  const VerificationSettings settings{.tolerance = 0.001, .size = 0.2, .reach = 0.02};
   const OutlineVerification a = verify_outline(kBracket, kUnit, bracket_load(), settings);
-  std::vector<std::vector<double>> other;  // elsewhere in memory
+  std::vector<std::vector<double>> other;  // other addresses in memory
   for (int k = 1; k < 2000; ++k) other.emplace_back(static_cast<std::size_t>(k % 97 + 1));
   const OutlineVerification b = verify_outline(kBracket, kUnit, bracket_load(), settings);
   EXPECT_EQ(a.compliance, b.compliance);
@@ -383,7 +383,7 @@ TEST(OutlineVerification, IsTheSameBitForBit) {
 
 TEST(OutlineVerification, EndsWhenItIsAskedTo) {
   int asked = 0;
-  Settings settings{.tolerance = 1e-5, .size = 0.2, .reach = 0.02};
+  VerificationSettings settings{.tolerance = 1e-5, .size = 0.2, .reach = 0.02};
   settings.keep_running = [&] { return ++asked < 3; };
   const OutlineVerification found = verify_outline(kBracket, kUnit, bracket_load(), settings);
   EXPECT_EQ(found.meshes, 3);

@@ -32,7 +32,7 @@ MOTION = {
 FULL_MOTION = {"CellData": {"strain_energy", "body"}, "PointData": {"displacement"}}
 RIGID_MOTION = {"CellData": {"body"}}
 
-ROUND_OFF = 1e-6  # of the Float32 numbers in the files
+ROUND_OFF = 1e-6  # for the Float32 numbers in the files
 LEAST_GREY = 0.1  # of a picture, shows density: a plate fills 0.8, and 0.2 turned by 45 degrees
 
 defects = []
@@ -154,7 +154,7 @@ def draw(layers, time, path):
     view.CameraParallelProjection = 1
     view.CameraParallelScale = 0.55 * max(height, width * size[1] / size[0])
     simple.SaveScreenshot(path, view, ImageResolution=size)
-    simple.Delete(view)  # a view that is still there at the end ends in an X error
+    simple.Delete(view)  # otherwise ParaView ends with an X error
 
     picture = simple.PNGSeriesReader(FileNames=[path])
     colours = dataset_adapter.WrapDataObject(servermanager.Fetch(picture)).PointData[0]

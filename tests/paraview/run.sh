@@ -1,10 +1,10 @@
 #!/bin/sh
 # tests/paraview/run.sh RUN [PICTURES]
-# Opens a run folder in ParaView (see check_run.py); pictures go to PICTURES (RUN_pictures,
-# beside the run: a folder in it that no run has written would keep the next run out).
-# Debian's ParaView with Python and the VTK that Flexmorph is built with exclude each other, so
-# ParaView gets a Debian 12 of its own in PARAVIEW_ROOT (build/paraview), made by the first check:
-# 3 GB, needs root and the package debootstrap.
+# Opens a run folder in ParaView (see check_run.py) and writes pictures to PICTURES (default:
+# RUN_pictures next to the run, because a folder in the run folder that no run has written would
+# block the next run). Debian's ParaView with Python and the VTK that Flexmorph is built with
+# exclude each other. Therefore ParaView gets a separate Debian 12 in PARAVIEW_ROOT
+# (build/paraview), which the first check creates: 3 GB, needs root and the package debootstrap.
 set -eu
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
@@ -31,8 +31,7 @@ check() {
     "$inside/pictures" || status=$?
 }
 check
-# Exit codes above 1 are those of the virtual display, whose start fails now and then on a busy
-# machine.
+# Exit codes above 1 come from the virtual display, whose start sometimes fails on a busy machine.
 [ "$status" -le 1 ] || check
 mkdir -p "$pictures"
 cp "$work"/pictures/*.png "$pictures"

@@ -31,7 +31,7 @@ void limit(int what, double bytes) {
   setrlimit(static_cast<__rlimit_resource_t>(what), &both);
 }
 
-/// In the child: a standard stream becomes a file.
+/// Replaces a standard stream of the child process by a file.
 void redirect(int stream, const std::string& path, int flags) {
   const int file = open(path.c_str(), flags, 0600);
   if (file < 0 || dup2(file, stream) < 0) _exit(126);
@@ -53,7 +53,7 @@ ChildProgram::ChildProgram(const std::vector<std::string>& words, const std::str
   std::vector<char*> argv;
   for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
-  std::fflush(nullptr);  // otherwise both processes would write what buffers hold
+  std::fflush(nullptr);  // otherwise both processes would write the contents of the buffers
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ != 0) return;
@@ -75,7 +75,7 @@ ChildProgram::ChildProgram(const std::vector<std::string>& words, const std::str
 ChildProgram::~ChildProgram() {
   if (pid_ <= 0) return;
   kill(-pid_, SIGKILL);
-  kill(pid_, SIGKILL);  // it may have no group yet
+  kill(pid_, SIGKILL);  // the process group may not exist yet
   waitpid(pid_, nullptr, 0);
 }
 

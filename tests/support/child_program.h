@@ -9,26 +9,29 @@
 /// Child processes of tests, each with a limit of wall-clock time.
 namespace flexmorph::testing {
 
-/// What a process may take; 0: as much as the system gives.
+/// Limits of a process; 0 means that only the limit of the system applies.
 struct ChildLimits {
-  double address_space = 0;  ///< ulimit -v [bytes]
-  double file_size = 0;      ///< ulimit -f [bytes]; SIGXFSZ is ignored, so that writing fails
+  double address_space = 0;  ///< Limit of the address space, as ulimit -v [bytes].
+  /// Limit of a written file, as ulimit -f [bytes]; SIGXFSZ is ignored, so that writing fails.
+  double file_size = 0;
 };
 
-/// How a process ended.
+/// The exit of a process and its output.
 struct ChildEnd {
-  int code = -1;           ///< exit code; -1: a signal ended the process
-  int signal = 0;          ///< the signal that ended the process; 0: none
-  bool timed_out = false;  ///< true: the process was killed because its time was over
-  std::string out, err;    ///< what it wrote to standard output and standard error
+  int code = -1;           ///< Exit code; -1: a signal ended the process.
+  int signal = 0;          ///< Signal that ended the process; 0: none.
+  bool timed_out = false;  ///< True if the process was killed because it exceeded its time limit.
+  /// Text that the process wrote to standard output and to standard error.
+  std::string out, err;
 };
 
-/// A program that a test starts. Its standard input is /dev/null. It has a process group of its
-/// own, which the destructor kills; it is killed, too, when the test program dies.
+/// A program that a test starts. Its standard input is /dev/null. It runs in its own process group,
+/// which the destructor kills; the kernel kills the program, too, if the test program ends.
 class ChildProgram {
  public:
-  /// @param words   of the command, the program first; the search path is used
-  /// @param folder  of the files stdout and stderr; empty: output is thrown away
+  /// Starts the program.
+  /// @param words   program and arguments; the program is found by the search path
+  /// @param folder  folder of the files stdout and stderr; empty: the output is discarded
   ChildProgram(const std::vector<std::string>& words, const std::string& folder,
                const ChildLimits& limits = {});
   ~ChildProgram();
@@ -37,14 +40,14 @@ class ChildProgram {
 
   /// Returns the number of the process; -1 after end().
   pid_t pid() const { return pid_; }
-  /// Tells whether the process has not ended.
+  /// Returns true while the process has not ended.
   bool runs() const;
-  /// Sends a signal to the process alone.
+  /// Sends a signal to the process, not to its group.
   void send(int signal) const;
-  /// Waits for the end of the process, and kills its group after a time [s].
+  /// Waits for the end of the process and kills its process group if a time limit [s] is exceeded.
   ChildEnd end(double seconds = kSeconds);
 
-  /// Time limit where a test asks for none [s]; tests of the gate have at most 180 s.
+  /// Default time limit [s]; a test of the suite "gate" may take at most 180 s.
   static constexpr double kSeconds = 150;
 
  private:
@@ -52,13 +55,13 @@ class ChildProgram {
   pid_t pid_ = -1;
 };
 
-/// Runs a command of a shell.
-/// @param folder  of the files stdout and stderr; empty: output is thrown away
+/// Runs a command by the shell.
+/// @param folder  folder of the files stdout and stderr; empty: the output is discarded
 ChildEnd run_shell(const std::string& command, const std::string& folder = "",
                    double seconds = ChildProgram::kSeconds);
 
-/// Waits until a condition holds: at most 90 s, and at most until the process ends.
-/// @return whether it holds; if it does not, the process is killed
+/// Waits until a condition holds, at most 90 s, and at most until the process ends.
+/// @returns true if the condition holds; otherwise the process is killed
 bool eventually(const ChildProgram& child, const std::function<bool()>& condition);
 
 }  // namespace flexmorph::testing

@@ -4,7 +4,8 @@
 
 namespace flexmorph::testing {
 
-/// A bent, tapered, sheared and unevenly divided reference.
+/// Returns a beam whose reference is curved, tapered and sheared, with elements of different
+/// length.
 inline fem::AncfBeam crooked_beam(double height) {
   const std::vector<double> x = {0, 0.2, 0.35, 0.6};
   std::vector<fem::BeamNode> nodes = fem::curve_reference(

@@ -7,7 +7,8 @@
 /// A designed plate with void, small enough for tests: 60 x 10 cells.
 namespace flexmorph::testing {
 
-/// Stiff under a force at its tip, after 60 iterations, half of it void. Made once.
+/// Returns a plate that was optimized for 60 iterations for a small compliance under a tip force;
+/// half of it is void. It is computed once.
 inline const mmc::BodyProblem& designed_plate() {
   static const mmc::BodyProblem made = [] {
     const TdfSettings band = mmc::test::tdf_settings(1.0);
@@ -16,15 +17,16 @@ inline const mmc::BodyProblem& designed_plate() {
     mmc::ComplianceEvaluator tip = mmc::test::tip_load();
     mmc::DesignSettings settings;
     settings.optimizer.max_iterations = 60;
-    bool going = true;
-    mmc::design_body(problem, tip, 1, settings, {}, going);
+    bool is_running = true;
+    mmc::design_body(problem, tip, 1, settings, {}, is_running);
     return problem;
   }();
   return made;
 }
 
-/// Its factors in a motion: those of its outlines, void as in dynamics.
-inline fem::Factors designed_factors() {
+/// Returns the scale factors of the designed plate in a motion, from its outlines; void cells have
+/// the values of the dynamic simulation.
+inline fem::ScaleFactors designed_factors() {
   const mmc::BodyProblem& problem = designed_plate();
   return mmc::dynamic_factors(problem, problem.design.components());
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-/// Central differences of fourth order: of anything that can be added and scaled.
+/// Central differences of fourth order for every type that can be added and scaled.
 namespace flexmorph::testing {
 
-/// f'(0); exact for polynomials up to degree 4.
+/// Returns f'(0); it is exact for polynomials up to degree 4.
 template <class F>
 auto first_difference(const F& f, double h) {
   using Value = decltype(f(h));
@@ -11,7 +11,7 @@ auto first_difference(const F& f, double h) {
   return Value((8 * inner - outer) / (12 * h));
 }
 
-/// f''(0); exact for polynomials up to degree 5.
+/// Returns f''(0); it is exact for polynomials up to degree 5.
 template <class F>
 auto second_difference(const F& f, double h) {
   using Value = decltype(f(h));

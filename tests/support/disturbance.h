@@ -7,14 +7,16 @@
 #include "fem/section.h"
 #include "geometry/base.h"
 
-/// Starts that differ in the last digits: FLEXMORPH_DISTURBANCE=1, 2, ... moves what tests that
-/// integrate or optimize begin with by up to 1e-13 of itself. Verdicts must not depend on it;
-/// tests/every_processor.sh tries five. Without the variable nothing is moved.
+/// Initial values that differ in the last digits. FLEXMORPH_DISTURBANCE=1, 2, ... changes the
+/// initial values of tests that integrate or optimize by a relative amount of at most 1e-13. The
+/// outcome of a test must not depend on it; tests/every_processor.sh tries five values. Without the
+/// variable no value is changed.
 namespace flexmorph::testing {
 
 inline constexpr double kDisturbance = 1e-13;
 
-/// The same number for the same value and disturbance, within kDisturbance of it.
+/// Returns a value changed by at most kDisturbance times itself; the same value and disturbance
+/// always give the same result.
 inline double disturbed(double value) {
   static const char* const number = std::getenv("FLEXMORPH_DISTURBANCE");
   if (!number) return value;
@@ -33,7 +35,7 @@ inline VectorXd disturbed(VectorXd values) {
   return values;
 }
 
-/// Stiffness and density: a motion with another material, by its last digits.
+/// Returns the section with disturbed stiffness and density.
 inline fem::PlaneSection disturbed(fem::PlaneSection section) {
   section.youngs_modulus = disturbed(section.youngs_modulus);
   section.density = disturbed(section.density);

@@ -6,7 +6,7 @@
 
 namespace flexmorph::testing {
 
-/// Largest misses of the constraints: Φ [m], Φ_q q̇ + Φ_t [m/s], Φ_q q̈ - γ [m/s²].
+/// Largest residuals of the constraints: Φ [m], Φ_q q̇ + Φ_t [m/s], Φ_q q̈ - γ [m/s²].
 struct Drift {
   double position = 0, velocity = 0, acceleration = 0;
 

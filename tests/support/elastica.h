@@ -3,17 +3,18 @@
 #include <array>
 #include <cmath>
 
-/// Inextensible cantilever with a dead transverse load at its tip, by shooting: tests only, nothing
-/// in common with the plate elements.
+/// Inextensible cantilever with a dead transverse load at its tip, solved by the shooting method.
+/// It is used by tests only and shares no code or formula with the plate elements.
 namespace flexmorph::reference {
 
 struct ElasticaTip {
-  double x = 0, z = 0;  ///< position of the tip in parts of the length
+  double x = 0, z = 0;  ///< Position of the tip as a fraction of the length.
 };
 
-/// θ' = κ, κ' = -α cos θ, x' = cos θ, z' = sin θ on [0, 1] with θ(0) = 0, κ(1) = κ° and
-/// α = F L²/(E I); κ° times the length: the curvature that it has unloaded. κ(0) by bisection, 4000
-/// steps of the classical Runge-Kutta method.
+/// Returns the tip of the cantilever that obeys θ' = κ, κ' = -α cos θ, x' = cos θ, z' = sin θ on
+/// [0, 1] with θ(0) = 0, κ(1) = κ° and α = F L²/(E I). κ° is the curvature of the unloaded beam
+/// times its length. κ(0) is found by bisection; each integration takes 4000 steps of the classical
+/// Runge-Kutta method.
 inline ElasticaTip elastica(double alpha, double rest_curvature = 0) {
   using Y = std::array<double, 4>;  // θ, κ, x, z
   const auto rate = [alpha](const Y& y) {
@@ -35,8 +36,8 @@ inline ElasticaTip elastica(double alpha, double rest_curvature = 0) {
     }
     return y;
   };
-  // κ(0)² = κ°² + 2 α sin θ(1) <= κ°² + 2 α: the moment at the tip is below zero at κ° and above at
-  // the end.
+  // Since κ(0)² = κ°² + 2 α sin θ(1) <= κ°² + 2 α, the curvature at the tip is below κ° at the
+  // lower bound and above κ° at the upper bound of the bisection.
   double low = rest_curvature, high = std::sqrt(rest_curvature * rest_curvature + 2 * alpha);
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);

@@ -6,10 +6,11 @@
 
 namespace flexmorph::testing {
 
-/// How the energy of a model changes along a motion, a solution or not, at one time [W].
+/// Rate of change of the energy of a model along a prescribed motion at one time [W]; the motion
+/// need not be a solution.
 struct EnergyRate {
-  double rate = 0;  ///< d(T + U + V)/dt, by differences
-  double work = 0;  ///< of the generalized force on the unknowns
+  double rate = 0;  ///< d(T + U + V)/dt by central differences.
+  double work = 0;  ///< Power of the generalized force on the unknowns.
   fem::Powers powers;
 };
 
@@ -31,7 +32,7 @@ inline EnergyRate energy_rate(fem::Workspace& model, const SmoothMotion& motion,
   return out;
 }
 
-/// A motion of all unknowns about the undeformed model.
+/// Returns a motion of all unknowns about the undeformed model.
 inline SmoothMotion any_motion(fem::Workspace& model) {
   model.prepare(0.0);
   return {model.reference().q, 0.02 * model.scales().cwiseInverse(), 7};

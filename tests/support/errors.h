@@ -6,10 +6,10 @@
 
 #include "geometry/base.h"
 
-/// What errors say.
+/// Texts of expected errors.
 namespace flexmorph::testing {
 
-/// The text of the Error that f() must throw, of that kind.
+/// Returns the text of the Error of the given kind that f() must throw.
 template <class F>
 std::string error_of(Error::Kind kind, const F& f) {
   try {
@@ -22,7 +22,7 @@ std::string error_of(Error::Kind kind, const F& f) {
   return "";
 }
 
-inline bool says(const std::string& text, const std::string& part) {
+inline bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 

@@ -8,7 +8,7 @@
 /// Exact integrals of polynomials, for tests of printed matrices.
 namespace flexmorph::testing {
 
-/// A rational number; numerators and denominators of the beam's matrices stay far below 2⁶³.
+/// A rational number; numerators and denominators of the beam's matrices are far below 2⁶³.
 struct Fraction {
   std::int64_t n = 0, d = 1;
 
@@ -25,7 +25,7 @@ struct Fraction {
   friend bool operator==(Fraction x, Fraction y) { return x.n == y.n && x.d == y.d; }
 };
 
-/// Polynomial in ξ and ζ: coefficients by exponents.
+/// Polynomial in ξ and ζ; its coefficients are stored by the two exponents.
 struct Polynomial {
   std::map<std::pair<int, int>, Fraction> terms;
 
@@ -43,7 +43,8 @@ struct Polynomial {
     return x;
   }
 
-  /// Over ξ in [0, 1], ζ in [-1/2, 1/2]: ∫ ξⁱ = 1/(i + 1), ∫ ζʲ = 2⁻ʲ/(j + 1) for even j, else 0.
+  /// Returns the integral over ξ in [0, 1], ζ in [-1/2, 1/2]: ∫ ξⁱ = 1/(i + 1), ∫ ζʲ = 2⁻ʲ/(j + 1)
+  /// for even j, else 0.
   Fraction integral() const {
     Fraction sum;
     for (const auto& [i, a] : terms)

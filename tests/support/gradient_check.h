@@ -13,17 +13,18 @@
 
 namespace flexmorph::optim {
 
-/// Remainders of a first-order Taylor expansion over a ladder of steps.
+/// Remainders of a first-order Taylor expansion over a refinement series of steps.
 struct TaylorTest {
-  std::vector<double> steps;       ///< t, largest first, two per decade
-  std::vector<double> remainders;  ///< |f(x + t d) - f(x) - t df·d|
-  std::vector<double> orders;      ///< between neighbours; one entry less than steps
-  /// Slope of log remainder over log t by least squares, over the steps whose remainder stands
-  /// above round-off; infinite when fewer than two do (f is linear along d).
+  std::vector<double> steps;       ///< Step sizes t, largest first, two per decade.
+  std::vector<double> remainders;  ///< Remainders |f(x + t d) - f(x) - t df·d|.
+  /// Observed orders between neighbouring steps; one entry less than steps.
+  std::vector<double> orders;
+  /// Slope of log(remainder) against log(t) by least squares, over the steps whose remainder is
+  /// larger than round-off; infinite if there are fewer than two (f is linear along d).
   double order = 0;
-  double decades = 0;  ///< of t that the fit covers
+  double decades = 0;  ///< Decades of t that the fit covers.
 
-  std::string table() const;  ///< t, remainder, order: one line per step
+  std::string table() const;  ///< Returns a table of t, remainder and order with one line per step.
 };
 
 inline std::string TaylorTest::table() const {
@@ -42,11 +43,12 @@ inline std::string TaylorTest::table() const {
   return text + line;
 }
 
-/// 2 for the right gradient of a smooth function, 1 for a wrong one.
+/// Returns the remainders of f along a direction; their order is 2 for the correct gradient of a
+/// smooth function and 1 for a wrong gradient.
 ///
 /// @param df         gradient of f at x (n)
 /// @param direction  d (n)
-/// @param decades    of steps below largest_step
+/// @param decades    range of the steps below largest_step
 /// @param noise      relative round-off of f, in units of |f|; remainders below ten times it are
 ///                   left out of the fit
 /// @throws Error (input) for vectors of different lengths or steps that are not positive,

@@ -38,7 +38,7 @@ void require(int flag, const char* what) {
   throw Error::numerical(std::string("IDA: ") + what + " failed with code " + std::to_string(flag));
 }
 
-/// The four equations and their derivative; y = (q, v, λ, μ).
+/// The four equations of the stabilized index-2 form and their derivative; y = (q, v, λ, μ).
 class Equations {
  public:
   explicit Equations(Workspace& model)
@@ -61,7 +61,7 @@ class Equations {
     at_rate = rate_of(x_);
   }
 
-  /// J = ∂F/∂y + c ∂F/∂ẏ.
+  /// Returns J = ∂F/∂y + c ∂F/∂ẏ.
   SparseMatrix jacobian(double t, double c, const double* y, const double* rate) {
     put(t, y, rate);
     Triplets out;
@@ -103,14 +103,15 @@ class Equations {
     model_.constraints(x_, c_);
   }
 
-  /// Φ_q q̇ + Φ_t with the constraints in c_.
+  /// Returns Φ_q q̇ + Φ_t with the constraints in c_.
   VectorXd rate_of(const State& x) const {
     VectorXd out = c_.rate;
     for (const auto& e : c_.jacobian) out[e.row()] += e.value() * x.v[e.col()];
     return out;
   }
 
-  /// What kkt_ has in the rows and columns of the unknowns, as derivatives by (q, v)[column ...].
+  /// Adds the entries of kkt_ in the rows and columns of the unknowns as derivatives of the dynamic
+  /// equations by q (column 0) or v (column n_).
   void add_block(int column, Triplets& out) const {
     for (int j = 0; j < n_; ++j)
       for (SparseMatrix::InnerIterator it(kkt_, j); it; ++it)
@@ -118,8 +119,9 @@ class Equations {
           out.emplace_back(n_ + static_cast<int>(it.row()), column + j, it.value());
   }
 
-  /// (Φ_q q̇ + Φ_t)_q by differences, in the unknowns that constraints act on: where Φ is linear the
-  /// differences vanish, and entries stay for the pattern's sake.
+  /// Adds (Φ_q q̇ + Φ_t)_q by forward differences, for the unknowns that occur in constraints.
+  /// Where Φ is linear the differences vanish, but the entries are kept so that the sparsity
+  /// pattern does not change.
   void add_rate_stiffness(Triplets& out) {
     std::vector<std::vector<int>> rows(static_cast<size_t>(n_));
     for (const auto& e : c_.jacobian) rows[static_cast<size_t>(e.col())].push_back(e.row());
@@ -150,7 +152,7 @@ int residual(sunrealtype t, N_Vector y, N_Vector rate, N_Vector out, void* equat
   try {
     e.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), N_VGetArrayPointer(out));
   } catch (const Error&) {
-    return 1;  // IDA tries a shorter step
+    return 1;  // IDA repeats with a shorter step
   }
   const double* r = N_VGetArrayPointer(out);
   return std::all_of(r, r + e.size(), [](double x) { return std::isfinite(x); }) ? 0 : 1;
@@ -166,8 +168,8 @@ int jacobian(sunrealtype t, sunrealtype c, N_Vector y, N_Vector rate, N_Vector, 
   return 0;
 }
 
-/// 1 over what each unknown may miss: multipliers, which only Newton's method looks at, by their
-/// own size at the start.
+/// Sets the allowed error of each unknown. The multipliers are no part of the local error; their
+/// size at the start scales them in the convergence test of Newton's method only.
 void set_allowed(const fem::Model& model, const State& start, const IdaSettings& s,
                  N_Vector allowed) {
   const VectorXd unit = model.scales().cwiseInverse();
@@ -212,7 +214,7 @@ std::vector<State> solve_by_ida(Workspace& model, const State& start, std::span<
   void* it = ida.get();
   require(IDAInit(it, residual, start.t, y.get(), rate.get()), "IDAInit");
   require(IDASVtolerances(it, 0, allowed.get()), "IDASVtolerances");
-  // IDA prints nothing: its codes are in our messages.
+  // IDA prints nothing, because its codes are part of the messages of this file.
 #if SUNDIALS_VERSION_MAJOR >= 7
   require(SUNContext_ClearErrHandlers(context.get()), "SUNContext_ClearErrHandlers");
 #else

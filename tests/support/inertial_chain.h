@@ -8,10 +8,11 @@
 
 namespace flexmorph::reference {
 
-/// The same plate as a chain of small shear-deformable elements in the inertial frame: lumped
-/// masses obey m r'' = f, material in the hub is carried by it, nodes are set free as they come out
-/// (with values interpolated in the root element). Central differences in time. No
-/// term of the rotating frame or of material flow appears.
+/// The rotating, extending plate as a chain of small shear-deformable elements in the inertial
+/// frame. Lumped masses obey m r'' = f. Material inside the hub moves with the hub, and a node
+/// becomes free when it leaves the hub (with values interpolated in the root element). Time
+/// integration is by central differences. The model has no terms of a rotating frame or of material
+/// flow.
 class Chain {
  public:
   Chain(const ReissnerBeam& beam, int elements, double end) : b_(beam), h_(beam.length / elements) {
@@ -79,7 +80,8 @@ class Chain {
   }
 
   ReissnerBeam b_;
-  double h_, next_ = 0, dt_ = 0, t_ = 0;  // next_: the node nearest to the hub, still inside
+  // next_: the node inside the hub that is nearest to its opening
+  double h_, next_ = 0, dt_ = 0, t_ = 0;
   std::vector<Node> node_;
 };
 

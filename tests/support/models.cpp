@@ -13,17 +13,18 @@ namespace flexmorph::testing {
 using fem::MaterialLine;
 using fem::Motion;
 
-std::vector<MaterialLine> even_lines(double from, double to, int n) {
+std::vector<MaterialLine> uniform_lines(double from, double to, int n) {
   std::vector<MaterialLine> out;
   for (int i = 0; i <= n; ++i) out.push_back({from + (to - from) * i / n, {}});
   return out;
 }
 
-MaterialLine swinging_line(double value, double amplitude, double pulsation) {
+MaterialLine swinging_line(double value, double amplitude, double angular_frequency) {
   return {value, [=](double t) {
-            return Motion{value + amplitude * std::sin(pulsation * t),
-                          amplitude * pulsation * std::cos(pulsation * t),
-                          -amplitude * pulsation * pulsation * std::sin(pulsation * t)};
+            return Motion{value + amplitude * std::sin(angular_frequency * t),
+                          amplitude * angular_frequency * std::cos(angular_frequency * t),
+                          -amplitude * angular_frequency * angular_frequency *
+                              std::sin(angular_frequency * t)};
           }};
 }
 
@@ -35,8 +36,8 @@ AncfPlate swinging_plate(ShapeSet shapes, double t) {
           t};
 }
 
-fem::Factors random_factors(unsigned seed) {
-  fem::Factors out;
+fem::ScaleFactors random_factors(unsigned seed) {
+  fem::ScaleFactors out;
   out.grid = {0.02, -0.05, 0.43, 0.12, 11, 5};
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> factor(0.1, 1.0);
@@ -49,14 +50,15 @@ fem::Factors random_factors(unsigned seed) {
   return out;
 }
 
-double integrate(const AncfPlate& plate, int e, const fem::Factors& factors, fem::FactorKind kind,
-                 fem::Tabulate what, const std::function<double(const fem::ShapeTable&)>& f) {
+double integrate(const AncfPlate& plate, int e, const fem::ScaleFactors& factors,
+                 fem::ScaleFactorKind kind, fem::Tabulate what,
+                 const std::function<double(const fem::ShapeTable&)>& f) {
   const int i = e / plate.n_n(), j = e % plate.n_n();
   const double m1 = plate.line_m(i).value, m2 = plate.line_m(i + 1).value;
   const double n1 = plate.line_n(j).value, n2 = plate.line_n(j + 1).value;
-  // Pieces: all cell lines inside the element cut it.
+  // Every cell line inside the element divides it into rectangles that are integrated separately.
   std::vector<double> cuts_m = {m1, m2}, cuts_n = {n1, n2};
-  const bool weighted = kind != fem::FactorKind::none && !factors.uniform();
+  const bool weighted = kind != fem::ScaleFactorKind::none && !factors.uniform();
   const Grid& g = factors.grid;
   if (weighted) {
     for (int c = 0; c <= g.nx; ++c)
@@ -79,7 +81,7 @@ double integrate(const AncfPlate& plate, int e, const fem::Factors& factors, fem
       if (weighted) {
         const int c = g.cell(cell(cuts_m[a] + dm / 2, g.x0, g.dx(), g.nx),
                              cell(cuts_n[b] + dn / 2, g.y0, g.dy(), g.ny));
-        factor = (kind == fem::FactorKind::mass ? factors.mass : factors.stiffness)[c];
+        factor = (kind == fem::ScaleFactorKind::mass ? factors.mass : factors.stiffness)[c];
       }
       for (size_t p = 0; p < 7; ++p)
         for (size_t r = 0; r < 7; ++r) {
@@ -111,15 +113,15 @@ SmoothMotion::SmoothMotion(VectorXd mean, const VectorXd& scale, unsigned seed)
     return out;
   };
   amplitude_ = draw(-0.2, 0.2).cwiseProduct(scale);
-  pulsation_ = draw(1, 3);
+  angular_frequency_ = draw(1, 3);
   phase_ = draw(0, 6);
 }
 
 VectorXd SmoothMotion::wave(double t, int derivative) const {
   VectorXd out(mean_.size());
   for (Eigen::Index i = 0; i < out.size(); ++i)
-    out[i] = amplitude_[i] * std::pow(pulsation_[i], derivative) *
-             std::sin(pulsation_[i] * t + phase_[i] + derivative * std::numbers::pi / 2);
+    out[i] = amplitude_[i] * std::pow(angular_frequency_[i], derivative) *
+             std::sin(angular_frequency_[i] * t + phase_[i] + derivative * std::numbers::pi / 2);
   return out;
 }
 
@@ -146,7 +148,7 @@ fem::LocalRows rows_of_element(const fem::Element& element, const MatrixXd& all,
 
 Scene make_scene(const RotatingPlate& p) {
   const double root = p.whole() - p.length;
-  std::vector<MaterialLine> m = even_lines(root, p.whole(), p.nx);
+  std::vector<MaterialLine> m = uniform_lines(root, p.whole(), p.nx);
   if (p.speed != 0)
     m[0].drive = [root, speed = p.speed](double t) { return Motion{root - speed * t, -speed, 0}; };
   const fem::PlaneSection section = disturbed(p.section);
@@ -160,7 +162,7 @@ Scene make_scene(const RotatingPlate& p) {
   fem::Body& body = scene.model.add_body(
       "plate",
       std::make_unique<AncfPlate>(2, p.shapes, std::move(m),
-                                  even_lines(-p.width() / 2, p.width() / 2, p.ny)),
+                                  uniform_lines(-p.width() / 2, p.width() / 2, p.ny)),
       section, std::move(terms));
   const fem::FrameDrive hub = [omega = p.omega](double t) {
     fem::FrameMotion frame;
@@ -170,12 +172,13 @@ Scene make_scene(const RotatingPlate& p) {
   };
   scene.model.add_joint(fem::make_weld("root", "plate", "root", hub, p.weld));
   if (!p.factors.uniform()) scene.model.set_factors(body, p.factors);
-  // P 4.2: 0.1 and 0.05 m for 0.05 m elements; a smaller lower limit does not chatter.
+  // P 4.2: 0.1 and 0.05 m for 0.05 m elements. With a smaller lower limit, splitting and merging do
+  // not alternate.
   const double size = p.length / p.nx;
   if (p.shapes == ShapeSet::q4)
-    scene.growths.push_back({"plate", hub, 1.3 * size, 0.25 * size, 0, 0, size});
+    scene.moving_roots.push_back({"plate", hub, 1.3 * size, 0.25 * size, 0, 0, size});
   else
-    scene.growths.push_back({"plate", hub, 2 * size, 0.6 * size});
+    scene.moving_roots.push_back({"plate", hub, 2 * size, 0.6 * size});
   return scene;
 }
 
@@ -186,8 +189,8 @@ Vec2 in_hub(const RotatingPlate& p, const fem::Model& model, const fem::State& x
   return {c * r.x() + s * r.y(), -s * r.x() + c * r.y()};
 }
 
-fem::Factors chequered(const RotatingPlate& p) {
-  fem::Factors out;
+fem::ScaleFactors chequered(const RotatingPlate& p) {
+  fem::ScaleFactors out;
   out.grid = {
       0, -p.width() / 2, p.whole(), p.width(), static_cast<int>(std::lround(p.whole() / 0.0025)),
       40};

@@ -6,7 +6,7 @@
 #include "fem/model/workspace.h"
 #include "tests/support/particle_pendulum.h"
 
-/// Two oscillators side by side: no joints, and a motion that is known.
+/// Two uncoupled oscillators: there are no joints, and the motion is known in closed form.
 namespace flexmorph::testing {
 
 /// A unit mass on springs to the origin, one for each direction.
@@ -14,7 +14,7 @@ class Springs final : public fem::Term {
  public:
   explicit Springs(const Vec2& stiffness) : stiffness_(stiffness) {}
   std::unique_ptr<fem::Term> clone() const override { return std::make_unique<Springs>(*this); }
-  void prepare(const fem::Element&, const fem::Factors&, bool) override {}
+  void prepare(const fem::Element&, const fem::ScaleFactors&, bool) override {}
   void add_force(int, const fem::Local& x, fem::LocalRows& force) const override {
     for (int c = 0; c < 2; ++c) force(0, c) += x.a(0, c) + stiffness_[c] * x.q(0, c);
   }
@@ -27,7 +27,7 @@ class Springs final : public fem::Term {
   Vec2 stiffness_;
 };
 
-/// q_i = A_i cos(ω_i t); the size of the model is 1 m.
+/// The motion q_i = A_i cos(ω_i t); the size of the model is 1 m.
 struct Oscillators {
   Vec2 omega, amplitude{1, 1};
 

@@ -13,7 +13,7 @@ namespace flexmorph::testing {
 
 inline constexpr double kLength = 1, kGravity = 9.81, kMass = 2;
 
-/// A body of one point: r = q.
+/// A body of one point, whose position r is the vector of unknowns q.
 class Particle final : public fem::Element, public fem::ShapeElement {
  public:
   Particle()
@@ -28,7 +28,7 @@ class Particle final : public fem::Element, public fem::ShapeElement {
   }
   std::vector<fem::NodeVectors> nodes() const override { return {}; }
   std::array<std::vector<double>, 2> lines() const override { return {}; }
-  void tabulate(int, int, fem::Tabulate, const fem::Factors&, fem::FactorKind,
+  void tabulate(int, int, fem::Tabulate, const fem::ScaleFactors&, fem::ScaleFactorKind,
                 fem::ShapeTable& out) const override {
     out.weight = VectorXd::Ones(1);
     out.material = {Vec2::Zero()};
@@ -37,7 +37,7 @@ class Particle final : public fem::Element, public fem::ShapeElement {
       none->resize(0, 0);
   }
   int locate(const Vec2&, fem::Tabulate what, fem::ShapeTable& out) const override {
-    tabulate(0, 0, what, {}, fem::FactorKind::none, out);
+    tabulate(0, 0, what, {}, fem::ScaleFactorKind::none, out);
     return 0;
   }
 
@@ -45,7 +45,7 @@ class Particle final : public fem::Element, public fem::ShapeElement {
   int zero_ = 0;
 };
 
-/// (|r|² - L²) / 2 = 0.
+/// The constraint (|r|² - L²) / 2 = 0.
 class Rod final : public fem::Joint {
  public:
   explicit Rod(bool exact_tangent) : exact_tangent_(exact_tangent) {}
@@ -79,11 +79,13 @@ struct Swing {
   double angle, rate;
   Vec2 position() const { return kLength * Vec2(std::sin(angle), -std::cos(angle)); }
   Vec2 velocity() const { return kLength * rate * Vec2(std::cos(angle), std::sin(angle)); }
-  /// Along r: m |v|² = λ L² + m g L cos(angle), λ < 0 pulls inwards with this sign of Φ.
+  /// Returns the multiplier along r from λ L² = m |v|² + m g L cos(angle); λ > 0 pulls the point
+  /// towards the origin.
   double lambda() const { return kMass * (rate * rate + kGravity / kLength * std::cos(angle)); }
 };
 
-/// θ'' = -g/L sin θ by Runge-Kutta steps of 1e-5 s: error (1e-5)^4, nothing.
+/// Returns the solution of θ'' = -g/L sin θ by Runge-Kutta steps of 1e-5 s; its error (1e-5)^4 is
+/// negligible.
 inline Swing exact_swing(double t) {
   static std::vector<Swing> table = {{1.0, 0.8}};
   constexpr double h = 1e-5;
@@ -104,7 +106,7 @@ inline Swing exact_swing(double t) {
   return table[index];
 }
 
-/// The model, and its state at time 0 without accelerations and multipliers.
+/// The model and its state at time 0 without accelerations and multipliers.
 inline fem::Workspace particle_pendulum(bool exact_tangent = true) {
   fem::Workspace model;
   std::vector<std::unique_ptr<fem::Term>> terms;

@@ -6,29 +6,29 @@
 
 #include "fem/model/workspace.h"
 
-/// Mechanisms of free points in the plane, for tests of what joints do: no elements or joints of
-/// the library take part.
+/// Mechanisms of free points in the plane, for tests of joints. They use no elements or joints of
+/// the library.
 namespace flexmorph::testing {
 
-/// Points of one body, two unknowns each; "elements" of one point.
+/// Points of one body with two unknowns each; every "element" is one point.
 class Points final : public fem::Element {
  public:
-  explicit Points(MatrixXd places)
+  explicit Points(MatrixXd locations)
       : Element(Kind<Points>{}, {.dim = 2,
                                  .n_shapes = 1,
-                                 .n_elements = static_cast<int>(places.rows()),
-                                 .n_vectors = static_cast<int>(places.rows())}),
-        places_(std::move(places)) {
-    for (int i = 0; i < places_.rows(); ++i) numbers_.push_back(i);
+                                 .n_elements = static_cast<int>(locations.rows()),
+                                 .n_vectors = static_cast<int>(locations.rows())}),
+        locations_(std::move(locations)) {
+    for (int i = 0; i < locations_.rows(); ++i) numbers_.push_back(i);
   }
   std::unique_ptr<fem::Element> clone() const override { return std::make_unique<Points>(*this); }
   std::span<const int> vectors(int e) const override { return {numbers_.data() + e, size_t{1}}; }
   double scale(int) const override { return 1; }
   bool is_position(int) const override { return true; }
-  MatrixXd reference() const override { return places_; }
+  MatrixXd reference() const override { return locations_; }
 
  private:
-  MatrixXd places_;
+  MatrixXd locations_;
   std::vector<int> numbers_;
 };
 
@@ -37,7 +37,7 @@ class PointMasses final : public fem::Term {
  public:
   explicit PointMasses(VectorXd masses) : masses_(std::move(masses)) {}
   std::unique_ptr<fem::Term> clone() const override { return std::make_unique<PointMasses>(*this); }
-  void prepare(const fem::Element&, const fem::Factors&, bool) override {}
+  void prepare(const fem::Element&, const fem::ScaleFactors&, bool) override {}
   void add_force(int e, const fem::Local& x, fem::LocalRows& force) const override {
     force += masses_[e] * x.a;
   }
@@ -50,7 +50,7 @@ class PointMasses final : public fem::Term {
   VectorXd masses_;
 };
 
-/// A time function and its rates.
+/// Returns a constant time function with its rates.
 using Course = std::function<fem::Motion(double)>;
 inline Course constant(double value) {
   return [value](double) { return fem::Motion{value, 0, 0}; };
@@ -59,7 +59,7 @@ inline Course linear(double value, double rate) {
   return [value, rate](double t) { return fem::Motion{value + rate * t, rate, 0}; };
 }
 
-/// Joints on numbered points of the body "points".
+/// A joint on numbered points of the body "points".
 class PointJoint : public fem::Joint {
  public:
   explicit PointJoint(std::string name) : name_(std::move(name)) {}
@@ -84,7 +84,8 @@ class PointJoint : public fem::Joint {
   int first_ = 0;
 };
 
-/// Φ = ½ (|x_a - x_b|² - L²) with a course of L; b = -1: x_b is a place of the ground.
+/// Constraint Φ = ½ (|x_a - x_b|² - L²) with L as a function of time; b = -1: x_b is a point of the
+/// ground.
 class Rod final : public PointJoint {
  public:
   Rod(std::string name, int a, int b, Course length, Vec2 ground = {0, 0})
@@ -109,7 +110,7 @@ class Rod final : public PointJoint {
   Vec2 ground_;
 };
 
-/// The line from the origin to a point stands at an angle: Φ = y cos α - x sin α.
+/// The line from the origin to a point has a prescribed angle: Φ = y cos α - x sin α.
 class AngleDrive final : public PointJoint {
  public:
   AngleDrive(std::string name, int point, Course angle)
@@ -130,7 +131,7 @@ class AngleDrive final : public PointJoint {
   Course angle_;
 };
 
-/// Σ w_i x_i = course over single unknowns (point, component, weight).
+/// The constraint Σ w_i x_i = value(t) over single unknowns (point, component, weight).
 class LinearRow final : public PointJoint {
  public:
   struct Part {
@@ -155,22 +156,22 @@ class LinearRow final : public PointJoint {
   Course value_;
 };
 
-inline MatrixXd places(const std::vector<Vec2>& points) {
+inline MatrixXd locations(const std::vector<Vec2>& points) {
   MatrixXd out(points.size(), 2);
   for (size_t i = 0; i < points.size(); ++i)
     out.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
   return out;
 }
 
-inline fem::Workspace point_model(const MatrixXd& places, const VectorXd& masses) {
+inline fem::Workspace point_model(const MatrixXd& locations, const VectorXd& masses) {
   fem::Workspace model;
   std::vector<std::unique_ptr<fem::Term>> terms;
   terms.push_back(std::make_unique<PointMasses>(masses));
-  model.add_body("points", std::make_unique<Points>(places), {}, std::move(terms));
+  model.add_body("points", std::make_unique<Points>(locations), {}, std::move(terms));
   return model;
 }
-inline fem::Workspace point_model(const MatrixXd& places) {
-  return point_model(places, VectorXd::Ones(places.rows()));
+inline fem::Workspace point_model(const MatrixXd& locations) {
+  return point_model(locations, VectorXd::Ones(locations.rows()));
 }
 
 template <class J, class... Arguments>
@@ -184,13 +185,13 @@ struct FourBar {
   double r = 0.2, l = 0.5, s = 0.4, g = 0.45;
 
   Vec2 crank_pin(double angle) const { return r * Vec2(std::cos(angle), std::sin(angle)); }
-  /// B on the left of the line from A to C; NaN where the rods do not reach.
+  /// Returns B on the left of the line from A to C; NaN if the rods are too short.
   Vec2 rocker_pin(double angle) const {
     const Vec2 a = crank_pin(angle), to_c = Vec2(g, 0) - a;
     const double d = to_c.norm(), along = (l * l - s * s + d * d) / (2 * d);
     return a + (along * to_c + std::sqrt(l * l - along * along) * Vec2(-to_c.y(), to_c.x())) / d;
   }
-  VectorXd places(double angle) const {
+  VectorXd locations(double angle) const {
     const Vec2 a = crank_pin(angle), b = rocker_pin(angle);
     VectorXd q(4);
     for (int c = 0; c < 2; ++c) {
@@ -199,12 +200,12 @@ struct FourBar {
     }
     return q;
   }
-  /// The angle at which coupler and rocker are one straight line.
+  /// Returns the angle at which coupler and rocker form one straight line.
   double limit_angle() const {
     return std::acos((r * r + g * g - (l + s) * (l + s)) / (2 * r * g));
   }
   fem::Workspace model(const Course& angle) const {
-    const VectorXd q = places(angle(0).value);
+    const VectorXd q = locations(angle(0).value);
     MatrixXd rows(2, 2);
     rows << q[0], q[1], q[2], q[3];
     fem::Workspace out = point_model(rows, Vec2(1, 3));

@@ -39,7 +39,8 @@ class RadauIIA {
     for (auto& stage : stage_) stage = a_;
     if (h != factored_step_) factor(h);
     if (!newton(h, 10, 0.3)) {
-      // The old matrix no longer contracts well: a new one, and patience with uneven progress.
+      // The old matrix no longer gives fast convergence; a new one is factorized, and more
+      // iterations with slower convergence are allowed.
       factor(h);
       for (auto& stage : stage_) stage = a_;
       if (!newton(h, 30, 2))
@@ -85,11 +86,10 @@ class RadauIIA {
     factored_step_ = h;
   }
 
-  /// Newton's method with the last factored matrix; false when a correction exceeds `contraction`
-  /// times the one before, or all iterations are used.
+  /// Iterates Newton's method with the last factored matrix. Returns false when a correction
+  /// exceeds `contraction` times the previous one, or all iterations are used.
   bool newton(double h, int iterations, double contraction) {
-    // Corrections below this [m, rad] change nothing a comparison can see (deflections are > 1e-4
-    // m).
+    // Smaller corrections [m, rad] do not change any comparison, because deflections are > 1e-4 m.
     constexpr double kTolerance = 1e-13;
     const int n = model_.size();
     VectorXd residual(3 * n);

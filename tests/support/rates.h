@@ -12,7 +12,7 @@ namespace flexmorph::testing {
 struct Rate {
   std::vector<double> step, error;
 
-  /// Slope of log error against log step by least squares.
+  /// Returns the slope of log(error) against log(step) by least squares.
   double order() const {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     const auto n = static_cast<double>(step.size());

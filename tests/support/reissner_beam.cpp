@@ -13,7 +13,7 @@ using Eigen::ArrayXd;
 using Eigen::Matrix3d;
 using Points3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// P_k(x) and its derivatives, k = 0 ... n - 1, by the three-term recursion.
+/// Evaluates P_k(x) and its derivatives, k = 0 ... n - 1, by the three-term recursion.
 void legendre(double x, int n, VectorXd& p, VectorXd& dp) {
   p.setZero(n);
   dp.setZero(n);
@@ -28,7 +28,8 @@ void legendre(double x, int n, VectorXd& p, VectorXd& dp) {
   }
 }
 
-/// Gauss-Legendre rule on [0, 1] (Golub & Welsch 1969: eigenvalues of the Jacobi matrix).
+/// Computes the Gauss-Legendre rule on [0, 1] (Golub & Welsch 1969: eigenvalues of the Jacobi
+/// matrix).
 void gauss_rule(int n, VectorXd& points, VectorXd& weights) {
   MatrixXd jacobi = MatrixXd::Zero(n, n);
   for (int k = 1; k < n; ++k) jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1);
@@ -37,7 +38,8 @@ void gauss_rule(int n, VectorXd& points, VectorXd& weights) {
   weights = eigen.eigenvectors().row(0).array().square();
 }
 
-/// psi_k and two derivatives at sigma: psi_0 = sigma, psi_k = (P_{k+1} - P_{k-1}) / (2 (2 k + 1)).
+/// Evaluates psi_k and two derivatives at sigma: psi_0 = sigma, psi_k = (P_{k+1} - P_{k-1}) / (2 (2
+/// k + 1)).
 void basis(double sigma, int n, VectorXd& psi, VectorXd& dpsi, VectorXd& ddpsi) {
   VectorXd p, dp;
   legendre(2 * sigma - 1, n + 1, p, dp);
@@ -62,13 +64,13 @@ struct Section {
         shear(b.shear_stiffness() * gamma2),
         moment(b.bending_stiffness() * kappa) {}
 
-  /// Factors of dx', dy' and dphi in N dGamma1 + Q dGamma2.
+  /// Returns the coefficients of dx', dy' and dphi in N dGamma1 + Q dGamma2.
   Vec3 force() const {
     return {normal * cosine - shear * sine, normal * sine + shear * cosine,
             normal * gamma2 - shear * (1 + gamma1)};
   }
 
-  /// Derivative of `force` by (x', y', phi).
+  /// Returns the derivative of `force` by (x', y', phi).
   Matrix3d tangent(const ReissnerBeam& b) const {
     const Vec3 d1(cosine, sine, gamma2), d2(-sine, cosine, -(1 + gamma1));
     Matrix3d k =
@@ -81,7 +83,7 @@ struct Section {
     return k;
   }
 
-  /// Strain energy per length [J/m].
+  /// Returns the strain energy per length [J/m].
   double energy() const { return (normal * gamma1 + shear * gamma2 + moment * kappa) / 2; }
 };
 
@@ -99,7 +101,7 @@ double ReissnerBeam::shear_stiffness() const {
 double ReissnerBeam::line_density() const { return density * area(*this); }
 double ReissnerBeam::rotary_inertia() const { return density * second_moment(*this); }
 
-/// Columns u, w, phi; rows are the Gauss points.
+/// Fields of the beam; the columns are u, w, phi, and the rows are the Gauss points.
 struct ReissnerModel::Fields {
   double length;
   Points3 value, slope, rate, second;  // field, d/ds, D, D2
@@ -110,7 +112,8 @@ ReissnerModel::ReissnerModel(const ReissnerBeam& beam) : beam_(beam) {
         beam.thickness > 0 && beam.tip_mass >= 0 && beam.modes >= 2 && beam.step > 0))
     throw Error::input(
         "reissner beam: lengths, stiffness, density and step are positive, modes >= 2");
-  // 2 n - 2 + 4 is the highest degree of the inertia terms; the sines and cosines take the rest.
+  // The inertia terms have the highest degree 2 n - 2 + 4; the other points integrate the sines and
+  // cosines.
   gauss_rule(beam.modes + 8, points_, weights_);
   psi_.resize(points_.size(), beam.modes);
   dpsi_ = ddpsi_ = psi_;
@@ -242,7 +245,8 @@ BeamBalance ReissnerModel::balance(double t, const VectorXd& q, const VectorXd& 
   }
   add_mass(beam_.tip_mass, {f.length + q(0), q(n)}, {v(0), v(n)}, {a(0), a(n)});
 
-  // The root: the hub point rests, material passes it with v r' and turns with omega + v kappa.
+  // The root: the point of the hub is fixed in the frame of the hub, and material passes it with
+  // the velocity v r' and the angular velocity omega + v kappa.
   const Vec3 root = dpsi_root_.transpose() * Eigen::Map<const MatrixXd>(q.data(), n, 3) / f.length;
   const Section section(beam_, 1 + root(0), root(1), 0, root(2));
   const Vec2 velocity = speed * Vec2(1 + root(0), root(1));

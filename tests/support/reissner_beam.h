@@ -4,48 +4,51 @@
 
 #include "geometry/base.h"
 
-/// An independent model of the growing, rotating plate (P 4.2), used by tests only.
+/// An independent model of the extending, rotating plate (P 4.2), used by tests only.
 ///
 /// A shear-deformable, geometrically exact beam in the plane (Reissner 1972, ZAMP 23, 795-804)
-/// leaves a hub that turns with constant omega; material flows through the clamped root with speed
-/// v, so that the free length is L(t) = L0 + v t, and a point mass sits on the free end. It shares
-/// nothing with the plate elements: other kinematics (cross-sections stay plane), other strains
-/// (Reissner's instead of Green-Lagrange), polynomials over the whole length, unknowns in the frame
-/// of the hub with explicit Coriolis, centrifugal and inflow terms, Radau IIA in time.
+/// slides out of a hub that rotates with constant omega. Material flows through the clamped root
+/// with speed v, so that the free length is L(t) = L0 + v t, and a point mass is fixed to the free
+/// end. The model shares nothing with the plate elements: it has other kinematics (cross-sections
+/// stay plane), other strains (Reissner's instead of Green-Lagrange), polynomials over the whole
+/// length, unknowns in the frame of the hub with explicit Coriolis, centrifugal and inflow terms,
+/// and the Radau IIA method in time.
 namespace flexmorph::reference {
 
-/// The plate seen as a beam; bending happens in the plane of `width`. SI units, radians.
+/// The plate modelled as a beam; bending occurs in the plane of `width`. SI units, radians.
 struct ReissnerBeam {
-  double length = 0.5;                  ///< free length L0 at t = 0 [m]
-  double speed = 0.1;                   ///< v, material leaving the hub [m/s]
-  double omega = 2 * std::numbers::pi;  ///< spin of the hub [rad/s]
-  double youngs_modulus = 1e8;          ///< [Pa]
+  double length = 0.5;                  ///< Free length L0 at t = 0 [m].
+  double speed = 0.1;                   ///< Speed v of the material that leaves the hub [m/s].
+  double omega = 2 * std::numbers::pi;  ///< Angular velocity of the hub [rad/s].
+  double youngs_modulus = 1e8;          ///< Young's modulus [Pa].
   double poisson_ratio = 0.3;
-  double density = 2700;    ///< [kg/m^3]
-  double width = 0.1;       ///< height of the cross-section in the plane of bending [m]
-  double thickness = 0.01;  ///< [m]
-  double tip_mass = 0.5;    ///< [kg], without rotary inertia
-  int modes = 12;           ///< polynomials per field
-  double step = 5e-4;       ///< largest time step [s]
+  double density = 2700;    ///< Density [kg/m^3].
+  double width = 0.1;       ///< Height of the cross-section in the plane of bending [m].
+  double thickness = 0.01;  ///< Thickness [m].
+  double tip_mass = 0.5;    ///< Mass at the tip [kg], without rotary inertia.
+  int modes = 12;           ///< Number of polynomials per field.
+  double step = 5e-4;       ///< Largest time step [s].
 
-  double axial_stiffness() const;    ///< E A [N]
-  double bending_stiffness() const;  ///< E I [N m^2]: plane stress, free lateral contraction
-  /// k G A [N] with k = 10 (1 + nu) / (12 + 11 nu), Cowper (1966), J. Appl. Mech. 33, 335-340: from
-  /// the plane-stress elasticity solution (0.850 for nu = 0.3; the common 5/6 is its value at nu
-  /// 0).
+  double axial_stiffness() const;  ///< Returns E A [N].
+  /// Returns E I [N m^2]: plane stress, free lateral contraction.
+  double bending_stiffness() const;
+  /// Returns k G A [N] with k = 10 (1 + nu) / (12 + 11 nu), Cowper (1966), J. Appl. Mech. 33,
+  /// 335-340, which follows from the plane-stress elasticity solution (0.850 for nu = 0.3; 5/6 for
+  /// nu = 0).
   double shear_stiffness() const;
-  double line_density() const;    ///< rho A [kg/m]
-  double rotary_inertia() const;  ///< rho I [kg m]
+  double line_density() const;    ///< Returns rho A [kg/m].
+  double rotary_inertia() const;  ///< Returns rho I [kg m].
 };
 
-/// Contents of the free length and what crosses its boundary (inertial frame, about the hub).
+/// Momentum and energy of the free length and their flow through its boundary (inertial frame,
+/// about the hub).
 struct BeamBalance {
-  double kinetic, strain;   ///< energies [J], tip mass included
-  double angular_momentum;  ///< [kg m^2/s]
-  double hub_torque;        ///< moment of the hub on the beam, from all inertia forces [N m]
-  double root_couple;       ///< the same from the strain at the root, -E I kappa(0) [N m]
-  double power;             ///< work of the hub on the beam plus energy of the inflow [W]
-  double momentum_inflow;   ///< angular momentum that enters with the material [N m]
+  double kinetic, strain;   ///< Energies [J], tip mass included.
+  double angular_momentum;  ///< Angular momentum [kg m^2/s].
+  double hub_torque;        ///< Moment of the hub on the beam, from all inertia forces [N m].
+  double root_couple;       ///< Couple at the root from its strain, -E I kappa(0) [N m].
+  double power;             ///< Work of the hub on the beam plus energy of the inflow [W].
+  double momentum_inflow;   ///< Angular momentum that enters with the material per time [N m].
 };
 
 /// Equations of motion of the beam, discretized in space.
@@ -70,23 +73,24 @@ struct BeamBalance {
 /// displacement.
 class ReissnerModel {
  public:
-  /// @throws Error (input) when a length, stiffness, density, mode count or step makes no sense.
+  /// @throws Error (input) when a length, stiffness, density, number of modes or step is out of
+  /// range.
   explicit ReissnerModel(const ReissnerBeam& beam);
 
   const ReissnerBeam& beam() const { return beam_; }
   int size() const { return 3 * beam_.modes; }
   double length(double t) const { return beam_.length + beam_.speed * t; }
 
-  /// Residual (3 n) of the virtual work for q and its time derivatives at fixed sigma.
+  /// Returns the residual (3 n) of the virtual work for q and its time derivatives at fixed sigma.
   VectorXd residual(double t, const VectorXd& q, const VectorXd& v, const VectorXd& a) const;
 
-  /// Derivatives (3 n x 3 n each) of the residual by a, v and q.
+  /// Computes the derivatives (3 n x 3 n each) of the residual by a, v and q.
   void linearize(double t, const VectorXd& q, MatrixXd& mass, MatrixXd& damping,
                  MatrixXd& stiffness) const;
 
   BeamBalance balance(double t, const VectorXd& q, const VectorXd& v, const VectorXd& a) const;
 
-  /// (x, y, phi) of the cross-section at sigma in [0, 1].
+  /// Returns (x, y, phi) of the cross-section at sigma in [0, 1].
   Vec3 section(double sigma, double t, const VectorXd& q) const;
 
  private:
@@ -101,21 +105,25 @@ class ReissnerModel {
 
 struct TipHistory {
   VectorXd time;
-  VectorXd deflection;  ///< y of the tip in the frame of the hub [m]; negative: it lags behind
-  VectorXd axial;       ///< x of the tip in the frame of the hub [m]
-  VectorXd energy;      ///< kinetic + strain [J]
-  VectorXd supplied;    ///< energy at t = 0 plus work of the hub and inflow until then [J]
-  VectorXd angular_momentum;  ///< [kg m^2/s]
-  VectorXd hub_torque;        ///< moment of the hub, from all inertia forces [N m]
-  VectorXd root_couple;       ///< the same from the curvature at the root [N m]
-  VectorXd impulse;  ///< angular momentum at t = 0 plus what hub and inflow gave [kg m^2/s]
+  /// The y of the tip in the frame of the hub [m]; negative: the tip lags behind the rotation.
+  VectorXd deflection;
+  VectorXd axial;   ///< The x of the tip in the frame of the hub [m].
+  VectorXd energy;  ///< Kinetic and strain energy [J].
+  /// Energy at t = 0 plus work of the hub and energy of the inflow since then [J].
+  VectorXd supplied;
+  VectorXd angular_momentum;  ///< Angular momentum [kg m^2/s].
+  VectorXd hub_torque;        ///< Moment of the hub, from all inertia forces [N m].
+  VectorXd root_couple;       ///< Couple at the root from the curvature there [N m].
+  /// Angular momentum at t = 0 plus the contributions of hub and inflow [kg m^2/s].
+  VectorXd impulse;
 };
 
-/// Motion from the start `rigid` at t = 0 (straight, unstrained, every material point moves with
-/// the velocity of the rigid extending body) to the last of the times, by the three-stage Radau IIA
-/// method (order 5, stiffly accurate) with steps of equal size <= beam.step between two times.
+/// Computes the motion from the start `rigid` at t = 0 (straight, unstrained, every material point
+/// moves with the velocity of the rigid extending body) to the last of the times, by the
+/// three-stage Radau IIA method (order 5, stiffly accurate) with steps of equal size <= beam.step
+/// between two times.
 /// @param times  increasing, >= 0 [s]
-/// @throws Error (input) for bad data, (numerical) when Newton's method does not converge.
+/// @throws Error (input) for invalid data, (numerical) when Newton's method does not converge.
 TipHistory simulate(const ReissnerBeam& beam, const VectorXd& times);
 
 }  // namespace flexmorph::reference

@@ -1,7 +1,7 @@
-// Shows that the reference beam deserves to be one: its statics, frequencies, kinematics, balances
-// and limits against closed forms and published numbers, its motion against a chain of small
-// elements in the inertial frame that knows no Coriolis, centrifugal or convective term, and its
-// own error.
+// Shows that the reference beam is a valid reference: its statics, frequencies, kinematics,
+// balances and limits agree with closed forms and published numbers, its motion agrees with a chain
+// of small elements in the inertial frame that has no Coriolis, centrifugal or convective term, and
+// its own discretization error is small.
 #include "tests/support/reissner_beam.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ using Eigen::Matrix4d;
 
 VectorXd zero(const ReissnerModel& model) { return VectorXd::Zero(model.size()); }
 
-/// Equilibrium in the frame of the hub (all rates zero at fixed sigma) under a tip force along y.
+/// Returns the equilibrium in the frame of the hub (all rates zero at fixed sigma) under a tip
+/// force along y.
 VectorXd equilibrium(const ReissnerModel& model, double t = 0, double force = 0, int ramp = 1) {
   VectorXd q = zero(model);
   MatrixXd mass, damping, stiffness;
@@ -40,7 +41,7 @@ VectorXd equilibrium(const ReissnerModel& model, double t = 0, double force = 0,
   return q;
 }
 
-/// Squared natural frequencies at q without gyroscopic terms, ascending.
+/// Returns the squared natural frequencies at q without gyroscopic terms, in ascending order.
 VectorXd squared_frequencies(const ReissnerModel& model, const VectorXd& q) {
   MatrixXd mass, damping, stiffness;
   model.linearize(0, q, mass, damping, stiffness);
@@ -56,7 +57,8 @@ double bisect(double low, double high, const std::function<double(double)>& f) {
   return (low + high) / 2;
 }
 
-// x'' = -(omega / c)^2 x on the rotating bar, EA (x'(L) - 1) = m omega^2 x(L): x = C sin(beta s).
+// The closed form solves x'' = -(omega / c)^2 x on the rotating bar with EA (x'(L) - 1) = m omega^2
+// x(L): x = C sin(beta s).
 TEST(ReissnerBeam, CentrifugalStretchIsTheClosedForm) {
   ReissnerBeam beam;
   beam.speed = 0;
@@ -67,17 +69,17 @@ TEST(ReissnerBeam, CentrifugalStretchIsTheClosedForm) {
   const double c = 1 / (b * std::cos(b * length) - m * omega2 / ea * std::sin(b * length));
   const VectorXd q = equilibrium(model);
   EXPECT_NEAR(q(0), c * std::sin(b * length) - length, 1e-13);
-  // The small-strain formula differs by the strain itself, 2e-4.
+  // The small-strain formula differs by a relative amount of the order of the strain, 2e-4.
   const double linear = omega2 / ea * (rho_a * std::pow(length, 3) / 3 + m * length * length);
   EXPECT_NEAR(q(0) / linear, 1, 4e-4);
-  // Root tension rho A omega^2 L^2 / 2 + m omega^2 L.
+  // The tension at the root is rho A omega^2 L^2 / 2 + m omega^2 L.
   const double tension = ea * (model.section(1e-6, 0, q).x() / (1e-6 * length) - 1);
   EXPECT_NEAR(tension / (rho_a * omega2 * length * length / 2 + m * omega2 * length), 1, 1e-3);
 }
 
-// Elliptic-integral solution of the cantilever with a tip force, P L^2 / EI = 1 and 10: K.
-// Mattiasson (1981), Int. J. Numer. Meth. Eng. 17, 145-153; inextensible, so the section is made
-// slender.
+// The expected numbers are the elliptic-integral solution of the cantilever with a tip force, P L^2
+// / EI = 1 and 10: K. Mattiasson (1981), Int. J. Numer. Meth. Eng. 17, 145-153. That beam is
+// inextensible; therefore the section is slender.
 TEST(ReissnerBeam, TipForceGivesTheElastica) {
   ReissnerBeam beam;
   beam.length = 1;
@@ -96,9 +98,9 @@ TEST(ReissnerBeam, TipForceGivesTheElastica) {
   EXPECT_NEAR(ten(2 * n), 1.43029, 1e-5);
 }
 
-/// Determinant whose roots are the frequencies of a Timoshenko cantilever with a tip mass: the
-/// state (w / L, phi, M L / EI, Q L^2 / EI) is carried from the clamp to the tip by a matrix
-/// exponential.
+/// Returns the determinant whose roots are the frequencies of a Timoshenko cantilever with a tip
+/// mass. A matrix exponential transfers the state (w / L, phi, M L / EI, Q L^2 / EI) from the clamp
+/// to the tip.
 double tip_determinant(const ReissnerBeam& b, double frequency) {
   const double l2 = b.length * b.length, scale = frequency * frequency * l2 / b.bending_stiffness();
   Matrix4d d = Matrix4d::Zero();
@@ -124,13 +126,14 @@ TEST(ReissnerBeam, FrequenciesAtRestSolveTheFrequencyEquations) {
   const double z = bisect(1e-3, 1.57, [=](double x) { return x * std::tan(x) - ratio; });
   const double axial = z / beam.length * std::sqrt(beam.youngs_modulus / beam.density);
   EXPECT_LT(((found.array() - axial).abs() / axial).minCoeff(), 1e-10);
-  // The 73 Hz of fem/README.md, Starts, are Rayleigh's quotient of a linear mode, an upper bound.
+  // The 73 Hz of fem/README.md, Starts, are the Rayleigh quotient of a linear mode, an upper bound.
   const double linear = std::sqrt(beam.axial_stiffness() / beam.length /
                                   (beam.tip_mass + beam.line_density() * beam.length / 3));
   EXPECT_NEAR(linear / (2 * std::numbers::pi), 73, 0.1);
   EXPECT_GT(linear, axial);
   EXPECT_LT(linear, 1.03 * axial);
-  // Bending: Rayleigh quotients in 16 polynomials, three modes; the error falls like exp(-n).
+  // Bending: the first three modes as Rayleigh quotients in 16 polynomials; the error falls like
+  // exp(-n).
   int roots = 0;
   for (double f = 1; roots < 3; f += 5) {
     if (tip_determinant(beam, f) * tip_determinant(beam, f + 5) > 0) continue;
@@ -139,15 +142,16 @@ TEST(ReissnerBeam, FrequenciesAtRestSolveTheFrequencyEquations) {
     ++roots;
   }
   // Shear and rotary inertia lower the first frequency by about 2 % against the slender beam (mass
-  // factor 33/140 of Rayleigh): in 1 s of vibration that is a visible phase.
+  // factor 33/140 of Rayleigh), which shifts the phase visibly within 1 s of vibration.
   const double slender =
       std::sqrt(3 * beam.bending_stiffness() / std::pow(beam.length, 3) /
                 (beam.tip_mass + 33.0 / 140 * beam.line_density() * beam.length));
   EXPECT_NEAR(found(0) / slender, 0.98, 0.02);
 }
 
-// Turning cantilever, omega sqrt(rho A L^4 / EI) = 2: 4.1373 across the plane of rotation (Wright
-// et al. 1982, J. Appl. Mech. 49, 197-202), hence sqrt(4.1373^2 - 2^2) in it.
+// Rotating cantilever with omega sqrt(rho A L^4 / EI) = 2: the published frequency is 4.1373 for
+// bending out of the plane of rotation (Wright et al. 1982, J. Appl. Mech. 49, 197-202), hence
+// sqrt(4.1373^2 - 2^2) in that plane.
 TEST(ReissnerBeam, RotationStiffensAsPublished) {
   ReissnerBeam beam;
   beam.length = 1;
@@ -173,11 +177,12 @@ struct Sample {
   }
 };
 
-// Follow one material point through the moving mesh in the inertial frame and difference its path.
+// The expected inertia forces come from difference quotients of the path of each material point,
+// which is followed through the moving mesh in the inertial frame.
 TEST(ReissnerBeam, InertiaIsTheAccelerationOfMaterialPoints) {
   ReissnerBeam beam;
   beam.speed = 0.5;
-  beam.youngs_modulus = 1e-12;  // inertia alone
+  beam.youngs_modulus = 1e-12;  // the elastic forces are negligible
   beam.modes = 5;
   const ReissnerModel model(beam);
   const int n = beam.modes, cells = 200;
@@ -205,7 +210,7 @@ TEST(ReissnerBeam, InertiaIsTheAccelerationOfMaterialPoints) {
       expected(i) += shape.dot(force);
     }
   };
-  for (int k = 0; k <= cells; ++k) {  // Simpson
+  for (int k = 0; k <= cells; ++k) {  // Simpson's rule
     const double w = (k == 0 || k == cells ? 1 : (k % 2 ? 4 : 2)) * length / (3.0 * cells);
     add(static_cast<double>(k) / cells,
         w * Vec3(beam.line_density(), beam.line_density(), beam.rotary_inertia()));
@@ -239,13 +244,14 @@ TEST(ReissnerBeam, TangentsAreDifferenceQuotients) {
     quotient[1].col(j) = difference(zero(model), d, zero(model));
     quotient[2].col(j) = difference(d, zero(model), zero(model));
   }
-  // Linear in a and v: round-off of elastic forces of 1e5 N over h; cubic remainder h^2 in q.
+  // The residual is linear in a and v, so that only the round-off of elastic forces of 1e5 N
+  // divided by h remains; in q the remainder is of order h^2.
   EXPECT_LT((quotient[0] - tangent[0]).cwiseAbs().maxCoeff(), 1e-5);
   EXPECT_LT((quotient[1] - tangent[1]).cwiseAbs().maxCoeff(), 1e-5);
   EXPECT_LT((quotient[2] - tangent[2]).norm() / tangent[2].norm(), 1e-8);
 }
 
-/// Root mean square difference of the deflections over the largest one.
+/// Returns the root mean square difference of the deflections, relative to the largest deflection.
 double chain_difference(const ReissnerBeam& beam, int elements) {
   Chain chain(beam, elements, 1);
   std::vector<double> times, deflection;
@@ -266,7 +272,8 @@ TEST(ReissnerBeam, AgreesWithAChainInTheInertialFrame) {
     ReissnerBeam beam;
     beam.speed = speed;
     const double coarse = chain_difference(beam, 16), fine = chain_difference(beam, 32);
-    // Second order in the element length (a factor of 4); 3 leaves room for higher orders.
+    // The error is of second order in the element length (a factor of 4); the limit of 3 allows for
+    // terms of higher order.
     EXPECT_LT(fine, 1e-3) << "v " << speed;
     EXPECT_GT(coarse, 3 * fine) << "v " << speed;
   }
@@ -283,26 +290,28 @@ const VectorXd& milliseconds() {
   return times;
 }
 
-// What hub and inflow give is what the beam has. Momentum: an identity of the kinematics, kept by
-// the collocation up to its order. Energy: holds only as far as test functions that vanish at the
-// root resolve the motion, so it also measures the error in space. At h = 5e-4 Radau IIA takes at
-// most (omega h)^6 / 7200 per step from the ringing (J): 1e-7 of the total in 2000 steps.
+// The energy and angular momentum supplied by hub and inflow equal the change of those of the beam.
+// The momentum balance is an identity of the kinematics that the collocation satisfies up to its
+// order. The energy balance holds only as far as test functions that vanish at the root resolve the
+// motion; therefore it also measures the error in space. At h = 5e-4 Radau IIA dissipates at most
+// (omega h)^6 / 7200 of the energy of the vibration (J) per step: 1e-7 of the total in 2000 steps.
 TEST(ReissnerBeam, EnergyAndAngularMomentumBalance) {
   for (const double speed : {0.1, 0.5}) {
     const TipHistory m = simulate(plate(speed), milliseconds());
     const double energy = m.energy.maxCoeff(), momentum = m.angular_momentum.maxCoeff();
     EXPECT_LT((m.energy - m.supplied).cwiseAbs().maxCoeff() / energy, 1e-7) << "v " << speed;
     EXPECT_LT((m.angular_momentum - m.impulse).cwiseAbs().maxCoeff() / momentum, 1e-10);
-    // Torque from all inertia forces against the bending moment of the clamp: the slowest quantity
-    // to converge, because it is pointwise.
+    // The torque from all inertia forces is compared with the bending moment at the clamp, which
+    // converges slowest because it is a pointwise value.
     const double torque = m.hub_torque.cwiseAbs().maxCoeff();
     EXPECT_LT((m.hub_torque - m.root_couple).cwiseAbs().maxCoeff() / torque, 1e-3) << "v " << speed;
   }
 }
 
-// A very stiff plate: large steps let Radau IIA damp all vibration at once, what remains is the
-// rigid extending body. Hub torque 2 omega v (rho A L^2 / 2 + m L) and the deflection of a
-// Timoshenko cantilever under the Coriolis forces 2 omega v rho A (along it) and 2 omega v m (tip).
+// In a very stiff plate, large steps let Radau IIA damp all vibration at once, so that the rigid
+// extending body remains. The expected values are its hub torque 2 omega v (rho A L^2 / 2 + m L)
+// and the deflection of a Timoshenko cantilever under the Coriolis forces 2 omega v rho A
+// (distributed) and 2 omega v m (at the tip).
 TEST(ReissnerBeam, StiffLimitIsTheRigidExtendingBody) {
   ReissnerBeam beam = plate(0.5);
   beam.youngs_modulus = 1e13;
@@ -314,14 +323,16 @@ TEST(ReissnerBeam, StiffLimitIsTheRigidExtendingBody) {
   const double linear = p * std::pow(length, 4) / (8 * beam.bending_stiffness()) +
                         tip * std::pow(length, 3) / (3 * beam.bending_stiffness()) +
                         (p * length * length / 2 + tip * length) / beam.shear_stiffness();
-  // Stiffening and rates of a quasi-static motion are of relative size omega^2 / omega_1^2 = 2e-5.
+  // Stiffening and the rates of a quasi-static motion have the relative size omega^2 / omega_1^2 =
+  // 2e-5.
   EXPECT_NEAR(motion.hub_torque(0) / torque, 1, 1e-4);
   EXPECT_NEAR(motion.root_couple(0) / torque, 1, 1e-4);
   EXPECT_NEAR(-motion.deflection(0) / linear, 1, 1e-4);
 }
 
-// Sizes to expect (linear, static, slender): 0.0380 m at L = 1, v = 0.5 and 1.2e-3 m at L = 0.6,
-// v = 0.1; the start throws the slow plate up to twice as far, stiffening holds the long one back.
+// Expected deflections (linear, static, slender beam): 0.0380 m at L = 1, v = 0.5 and 1.2e-3 m at L
+// = 0.6, v = 0.1. The start deflects the slow plate by up to two times its static value;
+// centrifugal stiffening reduces the deflection of the long plate.
 TEST(ReissnerBeam, DeflectionsHaveTheCoriolisScale) {
   const TipHistory slow = simulate(plate(0.1), milliseconds());
   const TipHistory fast = simulate(plate(0.5), milliseconds());
@@ -331,7 +342,8 @@ TEST(ReissnerBeam, DeflectionsHaveTheCoriolisScale) {
   EXPECT_LT(-slow.deflection.minCoeff(), 2.4e-3);
   EXPECT_NEAR(-fast.deflection(1000), 0.0380, 0.1 * 0.0380);
 
-  // Ringing along the axis: upward passages of the mean within 0.2 s, L = 0.5 to 0.52 m.
+  // The frequency of the axial vibration is counted from upward passages of the mean within 0.2 s,
+  // L = 0.5 to 0.52 m.
   const VectorXd stretch = (slow.axial - 0.1 * slow.time).head(201);
   std::vector<double> passages;
   for (int i = 0; i < 200; ++i) {
@@ -343,8 +355,8 @@ TEST(ReissnerBeam, DeflectionsHaveTheCoriolisScale) {
   EXPECT_NEAR(frequency, 70, 2);  // z tan z = rho A L / m at L = 0.51 m: 70.0 Hz
 }
 
-// The error of the default settings against more modes and half the step: far below the 1e-4 of the
-// largest deflection that a comparison to 0.6 % needs.
+// The error of the default settings is measured against more modes and half the step. It is far
+// below the 1e-4 of the largest deflection that a comparison to 0.6 % needs.
 TEST(ReissnerBeam, DefaultModesAndStepAreEnough) {
   for (const double speed : {0.1, 0.5}) {
     ReissnerBeam fine = plate(speed);
@@ -356,10 +368,10 @@ TEST(ReissnerBeam, DefaultModesAndStepAreEnough) {
   }
 }
 
-// Order 5 of Radau IIA in the tip deflection, in a range where round-off is far away.
+// The tip deflection converges with the order 5 of Radau IIA where errors are far above round-off.
 TEST(ReissnerBeam, StepConvergesWithOrderFive) {
   ReissnerBeam beam = plate(0.5);
-  beam.youngs_modulus = 1e6;  // soft and few modes: every frequency is resolved by the steps
+  beam.youngs_modulus = 1e6;  // soft, and few modes: the steps resolve every frequency
   beam.modes = 3;
   const VectorXd times = VectorXd::LinSpaced(26, 0, 0.25);
   const auto deflection = [&](double step) {

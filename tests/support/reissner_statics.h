@@ -8,20 +8,21 @@
 
 #include "geometry/base.h"
 
-/// Large static deflections of straight shear-deformable beams by shooting: tests only, nothing in
-/// common with the elements.
+/// Large static deflections of straight shear-deformable beams by the shooting method. They are
+/// used by tests only and share no code or formula with the elements.
 namespace flexmorph::reference {
 
-/// A rectangular section of a material.
+/// A rectangular cross-section and its material.
 struct BeamSection {
   double height, width, youngs_modulus, poisson_ratio;
   double shear_modulus() const { return youngs_modulus / (2 * (1 + poisson_ratio)); }
 };
 
-/// Strains (Γ₁, Γ₂, κ) of a section from its forces (N, Q, M).
+/// A function that returns the strains (Γ₁, Γ₂, κ) of a section from its forces (N, Q, M).
 using SectionLaw = std::function<Vec3(const Vec3& forces)>;
 
-/// N = E A Γ₁, Q = G A Γ₂ (shear factor one), M = E I κ: Reissner (1972), ZAMP 23, 795-804.
+/// Returns the law N = E A Γ₁, Q = G A Γ₂ (shear factor one), M = E I κ: Reissner (1972), ZAMP 23,
+/// 795-804.
 inline SectionLaw linear_law(const BeamSection& s) {
   const double area = s.height * s.width, inertia = area * s.height * s.height / 12;
   const Vec3 compliance(1 / (s.youngs_modulus * area), 1 / (s.shear_modulus() * area),
@@ -29,17 +30,17 @@ inline SectionLaw linear_law(const BeamSection& s) {
   return [compliance](const Vec3& f) { return Vec3(compliance.cwiseProduct(f)); };
 }
 
-/// A section that stays straight and becomes λ times as high, of St. Venant-Kirchhoff material with
-/// the enhanced continuum mechanics of fem/README.md, Beams (D⁰ over the section, D^ν by the
-/// strains of the axis):
+/// Returns the law of a section that stays straight and whose height is multiplied by λ, of St.
+/// Venant-Kirchhoff material with the enhanced continuum mechanics of fem/README.md, Beams (D⁰ over
+/// the section, D^ν by the strains of the axis):
 ///
 ///   F e₁ = (1 + Γ₁ - yλκ) t₁ + Γ₂ t₂,   F e₂ = λ t₂
 ///   ε₁₁ = a₀ + a₁ y + a₂ y²,   ε₂₂ = ½ (λ² - 1),   2ε₁₂ = λ Γ₂
-///   w = b/2 ∫ E ε₁₁² + E ε₂₂² + G (2ε₁₂)² dy + b h E ν/(2 - 2ν²) (ν ε₁₁² + ν ε₂₂² + 2ε₁₁ε₂₂)(y =
-///   0)
+///   w = b/2 ∫ E ε₁₁² + E ε₂₂² + G (2ε₁₂)² dy
+///       + b h E ν/(2 - 2ν²) (ν ε₁₁² + ν ε₂₂² + 2ε₁₁ε₂₂)(y = 0)
 ///
-/// The strains are those where w - N Γ₁ - Q Γ₂ - M κ is stationary, λ included; by Newton's method
-/// on differences of w. The rate of λ along the beam has no energy here.
+/// The strains and λ make w - N Γ₁ - Q Γ₂ - M κ stationary; they are found by Newton's method with
+/// differences of w. The derivative of λ along the beam does not contribute to the energy.
 inline SectionLaw kirchhoff_law(const BeamSection& s) {
   using Vec4 = Eigen::Vector4d;
   const auto energy = [s](const Vec4& z) {
@@ -88,10 +89,10 @@ inline SectionLaw kirchhoff_law(const BeamSection& s) {
   };
 }
 
-/// Position of a cross-section, its angle, its moment.
+/// Position of a cross-section, its angle and its moment.
 using BeamPoint = std::array<double, 4>;  // x, y, φ, m
 
-/// A beam under a constant force n on the right of every section,
+/// Integrates the equations of a beam with a constant force n on the right side of every section,
 ///
 ///   r' = (1 + Γ₁) t₁ + Γ₂ t₂,   φ' = κ,   m' = -(r' × n),   t₁ = (cos φ, sin φ),
 ///
@@ -118,9 +119,9 @@ inline BeamPoint integrate_beam(const SectionLaw& law, const Vec2& n, double len
   return y;
 }
 
-/// Deflection of the middle, downwards [m], of a beam on a pin and a roller that slides, under a
-/// dead force downwards in its middle: half of it, the angle at the support by bisection so that
-/// the angle in the middle is zero.
+/// Returns the downward deflection of the middle [m] of a beam on a pin and a sliding roller under
+/// a dead downward force at its middle. Only half of the beam is integrated; the angle at the
+/// support is found by bisection so that the angle in the middle is zero.
 inline double roller_deflection(const SectionLaw& law, double length, double force,
                                 int steps = 100) {
   const auto middle = [&](double angle) {

@@ -9,10 +9,11 @@
 #include "fem/rigid.h"
 #include "tests/support/disturbance.h"
 
-/// Planar rigid bodies set up and put in place by hand.
+/// Planar rigid bodies that tests create and place directly.
 namespace flexmorph::testing {
 
-/// A rigid body with mass, and weight where gravity is given; its unit axis is a joint behind it.
+/// Adds a rigid body with mass, and with weight if gravity is given, and the joint that keeps its
+/// axis at unit length.
 inline void add_rigid(fem::Workspace& model, const std::string& name,
                       const fem::RigidSection& section, const VectorXd& gravity = {}) {
   std::vector<std::unique_ptr<fem::Term>> terms;
@@ -23,7 +24,7 @@ inline void add_rigid(fem::Workspace& model, const std::string& name,
   model.add_joint(fem::make_unit_axis("unit axis of " + name, name));
 }
 
-/// Position of the point r and angle of a rigid body, with their rates.
+/// Position of the reference point r and angle of a rigid body, with their rates.
 struct Pose {
   Vec2 r{0, 0};
   double angle = 0;
@@ -42,7 +43,7 @@ inline void put(const fem::Model& model, const std::string& name, const Pose& po
       pose.angle_acceleration * v - pose.angle_rate * pose.angle_rate * u;
 }
 
-/// Angle of a rigid body in (-π, π], and its rate.
+/// Returns the angle of a rigid body in (-π, π].
 inline double angle_of(const fem::Model& model, const std::string& name, const fem::State& x) {
   const int at = model.body(name).first_dof;
   return std::atan2(x.q[at + 3], x.q[at + 2]);

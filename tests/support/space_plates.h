@@ -7,7 +7,7 @@
 #include "tests/support/disturbance.h"
 #include "tests/support/models.h"
 
-/// Plates in space for tests: a rectangle with terms by name, loads and holds.
+/// Plates in space for tests: a rectangle with terms selected by name, loads and held nodes.
 namespace flexmorph::testing {
 
 inline VectorXd vector(double x, double y, double z) {
@@ -25,7 +25,7 @@ struct SpacePlate {
   std::vector<std::string> terms = {"membrane", "bending"};
   std::vector<fem::Held> held;
 
-  /// Bending stiffness E c³ / (12 (1 - ν²)) [N m].
+  /// Returns the bending stiffness E c³ / (12 (1 - ν²)) [N m].
   double stiffness() const {
     return section.elasticity()(0, 0) * std::pow(section.thickness, 3) / 12;
   }
@@ -41,16 +41,17 @@ struct SpacePlate {
     for (const std::string& name : terms) all.push_back(fem::make_term(name, section));
     (all.push_back(std::move(loads)), ...);
     fem::Workspace out;
-    out.add_body(
-        "plate",
-        std::make_unique<AncfPlate>(3, shapes, even_lines(0, length, nx), even_lines(0, width, ny)),
-        section, std::move(all));
+    out.add_body("plate",
+                 std::make_unique<AncfPlate>(3, shapes, uniform_lines(0, length, nx),
+                                             uniform_lines(0, width, ny)),
+                 section, std::move(all));
     if (!held.empty()) out.add_joint(fem::make_hold("held", "plate", held));
     return out;
   }
 };
 
-/// Position, or displacement, at a material point from all unknowns of a model of one body.
+/// Returns the position, or the displacement, at a material point from all unknowns of a model of
+/// one body.
 inline Vec3 at_point(const fem::Model& model, const VectorXd& q, const Vec2& material) {
   const fem::Body& body = model.bodies()[0];
   fem::ShapeTable t;

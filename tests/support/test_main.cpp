@@ -7,7 +7,8 @@
 
 namespace {
 
-/// Every test has the same random numbers (Eigen's Random()), whatever ran before it.
+/// Resets the random numbers (Eigen's Random()) before each test, so that they do not depend on the
+/// tests that ran before.
 class SeedForEveryTest : public testing::EmptyTestEventListener {
   void OnTestStart(const testing::TestInfo&) override { std::srand(1); }
 };
@@ -17,7 +18,7 @@ class SeedForEveryTest : public testing::EmptyTestEventListener {
 int main(int argc, char** argv) {
   return flexmorph::testing::run_watched(argv, [&] {
     testing::InitGoogleTest(&argc, argv);
-    testing::UnitTest::GetInstance()->listeners().Append(new SeedForEveryTest);  // which owns it
+    testing::UnitTest::GetInstance()->listeners().Append(new SeedForEveryTest);  // takes ownership
     return RUN_ALL_TESTS();
   });
 }

@@ -5,10 +5,10 @@
 
 namespace flexmorph::testing {
 
-/// Deflection of the tip of a rotating plate at n even times up to the end [m], from the start
-/// `rigid`, and what the motion counted.
+/// Deflection of the tip of a rotating plate at n equidistant times up to the end [m], from the
+/// start `rigid`, and the step counts of the motion.
 struct PlateHistory {
-  VectorXd deflection;  ///< (n)
+  VectorXd deflection;  ///< Deflection at the n times (n).
   fem::StepCounts counts;
   fem::State final;
 };
@@ -24,7 +24,7 @@ inline PlateHistory tip_history(const RotatingPlate& p, double end, int n, doubl
   out.deflection.resize(n);
   Eigen::Index k = 0;
   const fem::MotionResult result =
-      fem::integrate(scene.model, scene.growths, settings, [&](const fem::MotionStep& s) {
+      fem::integrate(scene.model, scene.moving_roots, settings, [&](const fem::MotionStep& s) {
         if (s.stop && s.x.t > 0 && k < n)
           out.deflection[k++] = in_hub(p, s.model, s.x, p.tip()).y();
       });
@@ -33,7 +33,7 @@ inline PlateHistory tip_history(const RotatingPlate& p, double end, int n, doubl
   return out;
 }
 
-/// Root mean square of the difference in parts of the largest expected value.
+/// Returns the root mean square of the difference relative to the largest expected value.
 inline double rms_apart(const VectorXd& found, const VectorXd& expected) {
   return (found - expected).norm() / std::sqrt(static_cast<double>(expected.size())) /
          expected.cwiseAbs().maxCoeff();

@@ -31,13 +31,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Processes of a test that are about to end may take so long after it.
+/// Time that processes of a finished test have for their own end.
 constexpr std::chrono::seconds kGrace{2};
 
-/// Test that runs now: memory that the child writes and the watching process reads.
+/// The running test, in memory that the child writes and the watching process reads.
 struct RunningTest {
-  std::atomic<unsigned> number;  ///< counts the starts of tests
-  char name[256];                ///< "Suite.Test", empty between tests
+  std::atomic<unsigned> number;  ///< Number of tests started so far.
+  char name[256];                ///< Name "Suite.Test", empty between tests.
 };
 
 /// Writes the name of each test into the shared memory when the test starts.
@@ -57,10 +57,11 @@ class NameListener : public ::testing::EmptyTestEventListener {
 
 struct Process {
   pid_t pid, parent;
-  bool ended;  ///< it is a zombie: it has ended, and its parent has not asked for its exit code
+  /// True for a zombie: the process has ended, but its parent has not collected the exit code.
+  bool ended;
 };
 
-/// All processes of this machine that can be seen, from /proc/PID/stat.
+/// Returns all processes of this machine that are visible in /proc/PID/stat.
 std::vector<Process> all_processes() {
   std::vector<Process> out;
   std::error_code ignored;
@@ -70,7 +71,7 @@ std::vector<Process> all_processes() {
     if (std::from_chars(name.data(), name.data() + name.size(), pid).ec != std::errc{}) continue;
     std::ifstream in(entry.path() / "stat");
     const std::string text(std::istreambuf_iterator<char>(in), {});
-    // The name of the program stands in parentheses and may hold any character.
+    // The name of the program is in parentheses and may contain any character.
     const size_t close = text.rfind(')');
     if (close == std::string::npos) continue;
     std::istringstream rest(text.substr(close + 1));
@@ -83,7 +84,7 @@ std::vector<Process> all_processes() {
   return out;
 }
 
-/// Processes that descend from this one and have not ended.
+/// Returns the processes that descend from this one and have not ended.
 std::vector<pid_t> descendants() {
   const std::vector<Process> all = all_processes();
   std::vector<pid_t> family{getpid()}, out;
@@ -106,7 +107,7 @@ std::string command_of(pid_t pid) {
 constexpr int kNotEnded = -1;
 
 /// Collects the exit codes of children that have ended.
-/// @return the status of `child` if it is among them, else kNotEnded
+/// @returns the status of `child` if it is among them, else kNotEnded
 int collect(pid_t child) {
   int status = 0, found = kNotEnded;
   for (pid_t pid = 0; (pid = waitpid(-1, &status, WNOHANG)) > 0;)
@@ -114,7 +115,8 @@ int collect(pid_t child) {
   return found;
 }
 
-/// Collects what has ended. @return does this process have no child any more?
+/// Collects the children that have ended.
+/// @returns true if this process has no child any more
 bool has_no_child() {
   while (waitpid(-1, nullptr, WNOHANG) > 0) continue;
   return waitpid(-1, nullptr, WNOHANG) == -1 && errno == ECHILD;
@@ -132,7 +134,8 @@ void kill_descendants() {
 
 namespace {
 
-/// Names and kills what is left after the tests. @return is anything left?
+/// Names and kills the processes that are left after the tests.
+/// @returns true if there was one
 bool left_behind() {
   for (const Clock::time_point end = Clock::now() + kGrace; Clock::now() < end; usleep(10'000))
     if (has_no_child()) return false;
@@ -148,7 +151,8 @@ double seconds_per_test() {
   return text ? std::strtod(text, nullptr) : kDefaultTestSeconds;
 }
 
-/// Waits for the child, tells which test exceeds the limit. @return exit code of the program
+/// Waits for the child and names the test that exceeds the limit.
+/// @returns the exit code of the program
 int watch(pid_t child, const RunningTest& running, double limit, const sigset_t& signals) {
   unsigned number = 0;
   Clock::time_point begun = Clock::now();
@@ -180,7 +184,7 @@ int watch(pid_t child, const RunningTest& running, double limit, const sigset_t&
   }
 }
 
-/// Memory that two processes share by an open file.
+/// Maps the memory that two processes share by an open file.
 RunningTest* shared_memory(int file) {
   void* const memory =
       mmap(nullptr, sizeof(RunningTest), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -192,13 +196,14 @@ RunningTest* shared_memory(int file) {
 /// Number of the open file that holds the RunningTest, in the environment of the child.
 constexpr const char* kMemoryVariable = "FLEXMORPH_WATCHDOG_FILE";
 
-/// Starts this program anew as the child that runs the tests. A child without a new start could not
-/// end: libraries wait at the end for threads that they started when they were loaded.
+/// Starts this program again as the child that runs the tests. A forked child without a new start
+/// could not end, because some libraries wait at exit for threads that they started when they were
+/// loaded.
 [[noreturn]] void start_child(int file, char** argv) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a test's children leave is its own
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // orphans of the tests become children of this process
   setenv(kMemoryVariable, std::to_string(file).c_str(), 1);
-  settle_processor(1, argv);
+  set_up_processor(1, argv);
   execv("/proc/self/exe", argv);
   std::perror("execv");
   _exit(1);
@@ -221,7 +226,7 @@ int run_watched(char** argv, const std::function<int()>& run_tests) {
   }
   const double limit = seconds_per_test();
   if (!(limit > 0)) {
-    settle_processor(1, argv);
+    set_up_processor(1, argv);
     return run_tests();
   }
   const int file = memfd_create("watchdog", 0);

@@ -1,5 +1,5 @@
-// Tests that do what the watchdog (tests/support/watchdog.h) is there for; watchdog_test.cmake runs
-// each in a process of its own.
+// Tests whose behaviour the watchdog (tests/support/watchdog.h) must detect; watchdog_test.cmake
+// runs each in a separate process.
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-# Runs one test of watchdog_subjects.cpp and checks what the watchdog says and does:
+# Runs one test of watchdog_subjects.cpp and checks the exit code and the messages of the watchdog:
 #   cmake -DPROGRAM=... -DSUBJECT=... -P watchdog_test.cmake
 # A process that is left behind would keep the output open, and execute_process would wait for it.
 set(ENV{FLEXMORPH_TEST_SECONDS} 2)

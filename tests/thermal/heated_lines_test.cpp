@@ -1,5 +1,5 @@
-// Shows that heat acts on free material lines as the gradient of the hot energy says, that a path
-// may scale the temperature, and what cannot be heated.
+// Shows that the forces of heat on free material lines are the gradient of the hot energy, that a
+// path may scale the temperature, and that unsuitable terms are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,20 +15,20 @@ namespace {
 
 using testing::error_of;
 using testing::first_difference;
-using testing::says;
+using testing::mentions;
 using testing::ShapeSet;
 
 const PlaneSection kSection{0.03, 1e8, 0.3, 2700};
 
-/// s, up or down with a rate.
+/// Returns heat whose stretch s rises and falls with a rate.
 Heat warm() {
   return testing::heat_of([](double t) {
     return Motion{0.05 * std::sin(3 * t), 0.15 * std::cos(3 * t), -0.45 * std::sin(3 * t)};
   });
 }
 
-// All lines of the element free: force and tangent are derivatives of the energy by unknowns and by
-// lines, and the power of heat still is the rate at fixed unknowns.
+// All lines of the element are free. Force and tangent must be derivatives of the energy by
+// unknowns and by lines, and the power of heat must be the rate at fixed unknowns.
 class HeatedLines : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Terms, HeatedLines, ::testing::Values("membrane", "bending"));
 
@@ -56,19 +56,19 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
   };
   const auto force = [&](const VectorXd& y) {
     const Local x = local(y);
-    FreeForce f = FreeForce::Zero(n);
-    term.with_free_lines().add_free_force(0, x, f);
+    EulerianForce f = EulerianForce::Zero(n);
+    term.with_eulerian_lines().add_eulerian_force(0, x, f);
     return VectorXd(f);
   };
-  // Places of the element's unknowns among all.
-  std::vector<Eigen::Index> place;
+  // Indices of the unknowns of the element among all unknowns.
+  std::vector<Eigen::Index> location;
   for (const int k : plate.vectors(0))
-    for (int c = 0; c < 3; ++c) place.push_back(3 * k + c);
+    for (int c = 0; c < 3; ++c) location.push_back(3 * k + c);
   for (int l = 0; l < 4; ++l)
-    place.push_back(rest.size() + plate.free_sides(0)[static_cast<size_t>(l)]);
-  FreeTangent exact = FreeTangent::Zero(n, n);
+    location.push_back(rest.size() + plate.free_sides(0)[static_cast<size_t>(l)]);
+  EulerianTangent exact = EulerianTangent::Zero(n, n);
   const Local x = local(all);
-  term.with_free_lines().add_free_tangent(0, x, {1, 0, 0}, exact);
+  term.with_eulerian_lines().add_eulerian_tangent(0, x, {1, 0, 0}, exact);
   const VectorXd f = force(all);
   VectorXd unit(n);  // a displacement of 1e-5 m
   for (Eigen::Index k = 0; k < n; ++k)
@@ -79,7 +79,7 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto at = [&](double h) {
       VectorXd y = all;
-      y[place[static_cast<size_t>(k)]] += h * unit[k];
+      y[location[static_cast<size_t>(k)]] += h * unit[k];
       return y;
     };
     gradient[k] = first_difference([&](double h) { return energy(at(h)); }, 1.0);
@@ -136,20 +136,21 @@ TEST(Heated, ScalesItsTemperature) {
 TEST(Heated, RefusesWhatItCannotHeat) {
   using Kind = Error::Kind;
   const Heat good = testing::constant_heat(0.01);
-  EXPECT_TRUE(
-      says(error_of(Kind::input, [&] { make_heated(make_inertia(kSection), good); }), "'inertia'"));
-  EXPECT_TRUE(says(error_of(Kind::input,
-                            [&] {
-                              make_heated(make_beam_gcm(kSection), Heat{1, {}});
-                            }),
-                   "temperature"));
+  EXPECT_TRUE(mentions(error_of(Kind::input, [&] { make_heated(make_inertia(kSection), good); }),
+                       "'inertia'"));
+  EXPECT_TRUE(mentions(error_of(Kind::input,
+                                [&] {
+                                  make_heated(make_beam_gcm(kSection), Heat{1, {}});
+                                }),
+                       "temperature"));
   Heat endless = good;
   endless.expansion = std::nan("");
-  EXPECT_TRUE(says(error_of(Kind::input, [&] { make_heated(make_beam_gcm(kSection), endless); }),
-                   "finite"));
+  EXPECT_TRUE(mentions(
+      error_of(Kind::input, [&] { make_heated(make_beam_gcm(kSection), endless); }), "finite"));
   for (const double a : {-1.0, -2.0, std::nan("")}) {
     const BodyTerm term(make_heated(make_beam_gcm(kSection), testing::constant_heat(a)));
-    EXPECT_TRUE(says(error_of(Kind::numerical, [&] { term.heated->heat_to(0.25); }), "t = 0.25"));
+    EXPECT_TRUE(
+        mentions(error_of(Kind::numerical, [&] { term.heated->heat_to(0.25); }), "t = 0.25"));
   }
   const auto body_of = [](std::unique_ptr<Element> element, std::unique_ptr<Term> term) {
     Body body;
@@ -159,12 +160,12 @@ TEST(Heated, RefusesWhatItCannotHeat) {
     return body;
   };
   Body no_strain = body_of(std::make_unique<AncfBeam>(1, 0.1, 1), make_inertia(kSection));
-  EXPECT_TRUE(says(error_of(Kind::input, [&] { heat(no_strain, good); }), "'arm'"));
+  EXPECT_TRUE(mentions(error_of(Kind::input, [&] { heat(no_strain, good); }), "'arm'"));
   Body body = body_of(std::make_unique<AncfBeam>(1, 0.1, 1), make_beam_ecm(kSection));
   heat(body, good);
   EXPECT_TRUE(body.heat.has_value());
   EXPECT_EQ(body.terms[0]->name(), "ecm");
-  EXPECT_TRUE(says(error_of(Kind::input, [&] { heat(body, good); }), "already"));
+  EXPECT_TRUE(mentions(error_of(Kind::input, [&] { heat(body, good); }), "already"));
 }
 
 }  // namespace

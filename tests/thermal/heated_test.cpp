@@ -1,6 +1,6 @@
 // Shows that a heated term has the energy sᵖ U(F/s), integrated here point by point with F/s for
 // every elastic term; that forces, tangents and the power of the heat are its derivatives; that
-// eight elements at a time give the same; and that its mean force is a discrete gradient.
+// batches of eight elements give equal results; and that its mean force is a discrete gradient.
 #include "fem/thermal/heated.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using testing::first_difference;
 using testing::ShapeSet;
 
 const PlaneSection kSection{0.03, 1e8, 0.3, 2700};
-constexpr int kElements = 11;  // a batch that is full and one that is not
+constexpr int kElements = 11;  // one full batch and one that is not
 
 struct Case {
   std::string term;
@@ -35,11 +35,12 @@ bool is_beam(const std::string& term) { return term.substr(1, 2) == "cm"; }
 
 std::unique_ptr<Element> element_of(const Case& c) {
   if (is_beam(c.term)) return std::make_unique<AncfBeam>(1.1, 0.06, kElements);
-  return std::make_unique<AncfPlate>(c.dim, ShapeSet::h16, testing::even_lines(0.1, 1.2, kElements),
-                                     testing::even_lines(-0.02, 0.05, 1));
+  return std::make_unique<AncfPlate>(c.dim, ShapeSet::h16,
+                                     testing::uniform_lines(0.1, 1.2, kElements),
+                                     testing::uniform_lines(-0.02, 0.05, 1));
 }
 
-/// s, up or down with a rate.
+/// Returns heat whose stretch s rises and falls with a rate.
 Heat heat_for(ThermalVolume volume) {
   return testing::heat_of(
       [](double t) {
@@ -48,7 +49,7 @@ Heat heat_for(ThermalVolume volume) {
       volume);
 }
 
-/// ½ εᵀ D ε of the gradients over s.
+/// Returns ½ εᵀ D ε of the gradients divided by s.
 double density(const Eigen::Matrix3d& D, const Eigen::RowVectorXd& r_m,
                const Eigen::RowVectorXd& r_n) {
   const Vec3 strain(0.5 * (r_m.squaredNorm() - 1), 0.5 * (r_n.squaredNorm() - 1), r_m.dot(r_n));
@@ -58,7 +59,7 @@ double density(const Eigen::Matrix3d& D, const Eigen::RowVectorXd& r_m,
 double of_points(const Element& element, int e, const LocalRows& q, double s, int degree,
                  const Eigen::Matrix3d& D) {
   ShapeTable t;
-  element.tabulate(e, degree, Tabulate::gradient, {}, FactorKind::none, t);
+  element.tabulate(e, degree, Tabulate::gradient, {}, ScaleFactorKind::none, t);
   double out = 0;
   for (Eigen::Index p = 0; p < t.weight.size(); ++p)
     out += t.weight[p] * density(D, t.N_m.row(p) * q / s, t.N_n.row(p) * q / s);
@@ -79,8 +80,8 @@ double of_axis(const Element& element, int e, const LocalRows& q, double s) {
   return kSection.thickness * out;
 }
 
-/// Of a straight beam with assumed strains of its axis: at the ends of the element gradients are
-/// unknowns. D of all strains, D_axis of those of the axis.
+/// Returns the energy of a straight beam with assumed strains of its axis; at the ends of the
+/// element gradients are unknowns. D is for all strains, D_axis for the strains of the axis.
 double of_assumed(const Element& element, int e, const LocalRows& q, double s,
                   const Eigen::Matrix3d& D, const Eigen::Matrix3d& D_axis) {
   const double l = 0.1, h = 0.06;
@@ -136,10 +137,10 @@ double of_samples(const AncfPlate& plate, int e, const LocalRows& q, double s) {
   return kSection.thickness * out;
 }
 
-/// P (7), at the 9 x 9 points of the term.
+/// Returns the energy of P (7), at the 9 x 9 points of the term.
 double of_curvature(const Element& element, int e, const LocalRows& q, double s) {
   ShapeTable t;
-  element.tabulate(e, 16, Tabulate::curvature, {}, FactorKind::none, t);
+  element.tabulate(e, 16, Tabulate::curvature, {}, ScaleFactorKind::none, t);
   double out = 0;
   for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
     const auto at = [&](const MatrixXd& table) { return Vec3((table.row(p) * q / s).transpose()); };
@@ -174,7 +175,7 @@ class HeatedTerm : public ::testing::TestWithParam<Case> {
   void SetUp() override { term->prepare(*element, {}, true); }
   double stretch(double t) const { return heat_for(GetParam().volume).stretch(t).value; }
 
-  /// All unknowns at random; those of beams likewise.
+  /// Returns random unknowns of a plate or beam.
   MatrixXd shape(unsigned seed) const {
     const int n = element->n_vectors(), dim = element->dim();
     std::srand(seed);
@@ -216,8 +217,9 @@ LocalRows moved(LocalRows q, Eigen::Index k, double by) {
   return q;
 }
 
-// Differences of fourth order with steps of 2e-4 of the element: truncation 1e-15 times the growth
-// of fifth derivatives (large in bending, which is rational), round-off a few 1e-16 of the energy.
+// Differences of fourth order with steps of 2e-4 of the element have a truncation of 1e-15 times
+// the growth of fifth derivatives (large in bending, which is rational) and a round-off of a few
+// 1e-16 of the energy.
 TEST_P(HeatedTerm, IsTheEnergyOfTheShrunkGradients) {
   const int e = 9;
   const Local x = local(e);
@@ -244,7 +246,7 @@ TEST_P(HeatedTerm, TangentIsTheDerivativeOfTheForce) {
   const Local x = local(e);
   const Eigen::Index n = x.q.size();
   term.heated->heat_to(0.4);
-  LocalTangent exact = LocalTangent::Constant(n, n, 7.0);  // is added to
+  LocalTangent exact = LocalTangent::Constant(n, n, 7.0);  // must be added to, not overwritten
   term->add_tangent(e, x, {0.6, 3, 5}, exact);
   exact.array() -= 7.0;
   double largest = 0;
@@ -264,9 +266,9 @@ TEST_P(HeatedTerm, TangentIsTheDerivativeOfTheForce) {
 TEST_P(HeatedTerm, BatchesAreTheSame) {
   term.heated->heat_to(0.4);
   for (const int first : {0, 8}) {
-    Lanes q[kMaxShapes * kMaxDim], zero[kMaxShapes * kMaxDim] = {};
-    Lanes f[kMaxShapes * kMaxDim];
-    std::vector<Lanes> k(kMaxShapes * kMaxDim * kMaxShapes * kMaxDim);
+    Pack q[kMaxShapes * kMaxDim], zero[kMaxShapes * kMaxDim] = {};
+    Pack f[kMaxShapes * kMaxDim];
+    std::vector<Pack> k(kMaxShapes * kMaxDim * kMaxShapes * kMaxDim);
     Batch x{
         first, std::min(kLanes, kElements - first), element->n_shapes(), element->dim(), q, zero,
         zero};
@@ -275,8 +277,8 @@ TEST_P(HeatedTerm, BatchesAreTheSame) {
       const Local one = local(first + std::min(lane, x.count - 1));
       for (int i = 0; i < n; ++i) q[i][lane] = one.q.data()[i];
     }
-    std::fill(f, f + n, Lanes{} + 2.0);
-    std::fill(k.begin(), k.end(), Lanes{} + 3.0);
+    std::fill(f, f + n, Pack{} + 2.0);
+    std::fill(k.begin(), k.end(), Pack{} + 3.0);
     term.add_forces(x, f);
     term.add_tangents(x, {0.7, 1, 1}, k.data());
     for (int lane = 0; lane < x.count; ++lane) {
@@ -307,7 +309,7 @@ TEST_P(HeatedTerm, HeatPowerIsTheRateAtFixedUnknowns) {
     term.heated->heat_to(t);
     EXPECT_NEAR(term.heated->heat_power(e, x), rate, 1e-8 * std::abs(rate));
     EXPECT_GT(std::abs(rate), 1e-3 * term->strain_energy(e, x));
-    // Wherever the body is.
+    // The power does not depend on the position of the body.
     Local far = x;
     for (Eigen::Index k = 0; k < x.q.rows(); ++k)
       if (element->is_position(element->vectors(e)[static_cast<size_t>(k)]))
@@ -316,7 +318,8 @@ TEST_P(HeatedTerm, HeatPowerIsTheRateAtFixedUnknowns) {
   }
 }
 
-// A discrete gradient to round-off of the energies, and its derivative by the end.
+// The mean force is a discrete gradient to round-off of the energies, and its tangent is the
+// derivative by the end.
 TEST_P(HeatedTerm, MeanForceKeepsTheEnergy) {
   const int e = 5;
   term.heated->heat_to(0.4);

@@ -1,7 +1,7 @@
-// Shows hot bodies that something holds, in equilibrium along a path of temperatures: a partial
-// clamp leaves a beam free of stress, a full one tapers it over a boundary layer of known length,
-// held bars and plates push with the force of the closed form, and plates that nothing holds grow
-// without stress on any mesh, in the plane and in space.
+// Shows equilibria of supported hot bodies along a path of temperatures: a partial clamp leaves a
+// beam free of stress, a full clamp tapers it over a boundary layer of known length, supported bars
+// and plates push with the force of the closed form, and unsupported plates expand without stress
+// on any mesh, in the plane and in space.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct Equilibrium {
   Workspace model;
   State x;
   StaticResult result;
-  double held = 0;  ///< strain energy at the cold size
+  double held = 0;  ///< Strain energy at the cold size.
 };
 
 Equilibrium solve(std::unique_ptr<Element> element, const PlaneSection& section,
@@ -42,7 +42,7 @@ Equilibrium solve(std::unique_ptr<Element> element, const PlaneSection& section,
   return out;
 }
 
-const HoldPlace kRoot = HoldPlace::at({0, 0});
+const HoldLocation kRoot = HoldLocation::at({0, 0});
 
 std::vector<Held> partial_clamp() {
   return {{kRoot, NodeVector::r, {0, 1}}, {kRoot, NodeVector::r_m, {1}}};
@@ -53,7 +53,7 @@ std::vector<Held> full_clamp() {
           {kRoot, NodeVector::r_n, {0, 1}}};
 }
 
-// T 3.1: position and rotation of a section hold no strain.
+// T 3.1: supports for position and rotation of a section cause no strain.
 TEST(ClampedBeam, PartiallyIsFreeOfStress) {
   for (const char* term : {"gcm", "ecm", "gcm_full", "ecm_full"})
     for (const auto path : {StaticSettings::Path::load, StaticSettings::Path::arc_length})
@@ -74,8 +74,9 @@ TEST(ClampedBeam, PartiallyIsFreeOfStress) {
       }
 }
 
-// Near the clamp r_y = (0, w(x)) with w(0) = 1. Small δ = w - s: energy ½ ∫ (E h δ² + G h³/12 δ'²)
-// (σ₁₁ = 0), so δ decays over h √(G/(12 E)), 0.0179 m here. Fitted from one to four such lengths.
+// Near the clamp r_y = (0, w(x)) with w(0) = 1. For small δ = w - s the energy is ½ ∫ (E h δ² + G
+// h³/12 δ'²) (σ₁₁ = 0), so that δ decays over h √(G/(12 E)), 0.0179 m here. It is fitted from one
+// to four such lengths.
 TEST(ClampedBeam, FullyIsTaperedOverABoundaryLayer) {
   const double h = 0.1, a = 1e-3, length = h * std::sqrt(1 / (12 * 2 * 1.3));
   for (const char* term : {"gcm", "ecm", "gcm_full", "ecm_full"}) {
@@ -99,21 +100,21 @@ TEST(ClampedBeam, FullyIsTaperedOverABoundaryLayer) {
     std::cout << "  " << term << ": boundary layer " << fitted << " m, closed form " << length
               << " m\n";
     EXPECT_NEAR(fitted, length, 0.1 * length);
-    // Far from it nothing is strained. Long elements begin seven lengths from the clamp, where e⁻⁷
-    // of it is left; each takes it down further.
+    // Far from the clamp there is no strain. Long elements begin seven lengths from the clamp,
+    // where e⁻⁷ of it remains; each reduces it further.
     EXPECT_NEAR(q(3 * 64 + 2, 1), 1 + a, 1e-5 * a);
   }
 }
 
-// ε₁₁ = ½ (s⁻² - 1), S₁₁ = E ε₁₁ (the sides are free), and with the volume sᵖ the force
-// N = sᵖ⁻² A S₁₁, the derivative of the energy by the length.
+// ε₁₁ = ½ (s⁻² - 1), S₁₁ = E ε₁₁ (the sides are free). With the volume sᵖ the force is N = sᵖ⁻² A
+// S₁₁, the derivative of the energy by the length.
 TEST(HeldBar, PushesWithTheForceOfTheClosedForm) {
   const double a = 0.02, s = 1 + a;
   for (const auto volume :
        {ThermalVolume::grown, ThermalVolume::grown_plane, ThermalVolume::reference})
     for (const char* term : {"gcm", "ecm", "gcm_full", "ecm_full"})
       for (const int n : {1, 3}) {
-        const HoldPlace end = HoldPlace::at({0.25, 0});
+        const HoldLocation end = HoldLocation::at({0.25, 0});
         const Heat hot = testing::constant_heat(a, volume);
         auto e = solve(std::make_unique<AncfBeam>(0.25, 0.1, n), kSection, {term},
                        {{kRoot, NodeVector::r, {0, 1}}, {end, NodeVector::r, {0, 1}}}, hot);
@@ -123,7 +124,7 @@ TEST(HeldBar, PushesWithTheForceOfTheClosedForm) {
         const Eigen::Index last = 6 * n;  // x of the last node
         EXPECT_NEAR(pull[last], force, 1e-10 * std::abs(force));
         EXPECT_NEAR(pull[0], -force, 1e-10 * std::abs(force));
-        // Across: F₂₂²/s² - 1 = -ν (s⁻² - 1).
+        // Across the bar: F₂₂²/s² - 1 = -ν (s⁻² - 1).
         EXPECT_NEAR(rows_of_body(e.model, e.x.q)(2, 1), s * std::sqrt(1 - 2 * 0.3 * strain), 1e-11);
       }
 }
@@ -173,7 +174,7 @@ const PlaneSection kPlate{0.02, 1e9, 0.3, 1000};
 
 TEST_P(HotPlate, GrowsWithoutStressWhereNothingHoldsIt) {
   const double a = 0.03;
-  const HoldPlace along = HoldPlace::at({0.5, 0}), across = HoldPlace::at({0, 0.3});
+  const HoldLocation along = HoldLocation::at({0.5, 0}), across = HoldLocation::at({0, 0.3});
   std::vector<Held> held = {{kRoot, NodeVector::r, all_components()}, {along, NodeVector::r, {1}}};
   if (GetParam().dim == 3) {
     held[1].components = {1, 2};
@@ -190,7 +191,8 @@ TEST_P(HotPlate, GrowsWithoutStressWhereNothingHoldsIt) {
   }
 }
 
-// F = 1: S = E/(1 - ν) ½ (s⁻² - 1) in all directions, and the edge of width w feels sᵖ⁻² h w S.
+// With F = 1 the stress is S = E/(1 - ν) ½ (s⁻² - 1) in all directions, and the force on an edge of
+// width w is sᵖ⁻² h w S.
 TEST_P(HotPlate, HeldAtAllEdgesIsPressedFromAllSides) {
   const double a = 0.03, s = 1 + a;
   std::vector<Held> held;

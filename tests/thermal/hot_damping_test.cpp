@@ -1,5 +1,5 @@
-// Shows that damping acts in hot bodies: one that grows freely dissipates nothing, tangents are
-// derivatives, and energies, forces and powers belong together while the temperature moves.
+// Shows that damping is right in hot bodies: free expansion dissipates nothing, tangents are
+// derivatives, and energies, forces and powers are consistent while the temperature changes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,24 +20,24 @@ using Names = std::vector<std::string>;
 const PlaneSection kSection{0.03, 1e6, 0.3, 2700};
 constexpr double kNow = 0.4;
 
-const std::vector<std::pair<Names, TermPlace>> kDamped = {
-    {{"inertia", "membrane", "damping"}, TermPlace::plane},
-    {{"inertia", "membrane", "bending", "damping"}, TermPlace::space},
-    {{"inertia", "ecm", "damping"}, TermPlace::beam}};
+const std::vector<std::pair<Names, TermDomain>> kDamped = {
+    {{"inertia", "membrane", "damping"}, TermDomain::plane},
+    {{"inertia", "membrane", "bending", "damping"}, TermDomain::space},
+    {{"inertia", "ecm", "damping"}, TermDomain::beam}};
 
-Workspace hot_model(const Names& names, TermPlace place) {
+Workspace hot_model(const Names& names, TermDomain location) {
   Workspace model;
   Body& body =
-      model.add_body("body", element_in(place), kSection,
+      model.add_body("body", element_in(location), kSection,
                      make_terms(names, kSection, {{"damping_time", 0.3}, {"bending_points", 12}}));
   heat(body, moving_heat());
   return model;
 }
 
-// Strains are those of q/s: where that stands still no stress arises, however fast q moves.
+// Strains are those of q/s: if q/s is constant there is no damping stress at any rate of q.
 TEST(HotDamping, FreeGrowthDissipatesNothing) {
-  for (const auto& [names, place] : kDamped) {
-    Workspace model = hot_model(names, place);
+  for (const auto& [names, location] : kDamped) {
+    Workspace model = hot_model(names, location);
     State x = model.reference();
     x.t = kNow;
     model.prepare(x);
@@ -46,13 +46,14 @@ TEST(HotDamping, FreeGrowthDissipatesNothing) {
     const double growing = model.dissipation(x);
     x.v.setZero();
     EXPECT_LT(growing, 1e-28 * model.dissipation(x) + 1e-28);
-    EXPECT_GT(model.dissipation(x), 0);  // held, it is strained as it would have grown
+    // with fixed unknowns the strain changes like the free expansion
+    EXPECT_GT(model.dissipation(x), 0);
   }
 }
 
 TEST(HotDamping, TangentsAreDerivatives) {
-  for (const auto& [names, place] : kDamped) {
-    const auto element = element_in(place);
+  for (const auto& [names, location] : kDamped) {
+    const auto element = element_in(location);
     auto terms = make_terms(names, kSection, {{"damping_time", 0.3}});
     const BodyTerm term = make_heated(std::move(terms.back()), moving_heat());
     term.heated->heat_to(kNow);
@@ -76,10 +77,10 @@ TEST(HotDamping, TangentsAreDerivatives) {
   }
 }
 
-// d(T + U)/dt = (M q̈ + F) · q̇ + heat - loss for any motion.
+// d(T + U)/dt = (M q̈ + F) · q̇ + heat - loss must hold for any motion.
 TEST(HotDamping, ChangesTheEnergyByThePowers) {
-  for (const auto& [names, place] : kDamped) {
-    Workspace model = hot_model(names, place);
+  for (const auto& [names, location] : kDamped) {
+    Workspace model = hot_model(names, location);
     const testing::SmoothMotion motion = testing::any_motion(model);
     for (const double time : {0.3, 0.9}) {
       const auto [rate, work, p] = testing::energy_rate(model, motion, time);
@@ -89,7 +90,7 @@ TEST(HotDamping, ChangesTheEnergyByThePowers) {
   }
 }
 
-// Eight elements side by side see the same rates.
+// Batches of eight elements must give the forces of single elements.
 TEST(HotDamping, BatchesAreElements) {
   Workspace model = hot_model(kDamped[0].first, kDamped[0].second);
   State x = model.reference();

@@ -1,5 +1,5 @@
-// Shows that terms of hot bodies are their densities: for every elastic row the closed form that is
-// heated has the forces, tangents, energies and powers of the heated density.
+// Shows that terms of hot bodies equal their densities: for every elastic row the heated closed
+// form has the forces, tangents, energies and powers of the heated density.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ constexpr double kNow = 0.4;
 TEST(HotRows, AreTheirDensities) {
   for (const TermRow* row : term_rows()) {
     if (!row->elastic) continue;
-    for (const TermPlace place : row->places) {
-      const auto element = testing::element_in(place);
+    for (const TermDomain domain : row->domains) {
+      const auto element = testing::element_in(domain);
       const BodyTerm closed = make_heated(make_term(row->name, kSection), testing::moving_heat());
       const BodyTerm generic = make_heated(
           make_elastic_term(row->name, row->elastic({kSection, {}, {}})), testing::moving_heat());

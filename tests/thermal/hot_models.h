@@ -16,7 +16,7 @@
 /// Hot beams and plates for tests.
 namespace flexmorph::testing {
 
-/// Heat with α = 1: `rise` is α ΔT with its rate.
+/// Returns heat with α = 1, where `rise` is α ΔT with its rate.
 inline fem::Heat heat_of(std::function<fem::Motion(double)> rise,
                          fem::ThermalVolume volume = fem::ThermalVolume::grown) {
   return {1, std::move(rise), volume};
@@ -25,7 +25,7 @@ inline fem::Heat constant_heat(double a, fem::ThermalVolume volume = fem::Therma
   return heat_of([a](double) { return fem::Motion{a, 0, 0}; }, volume);
 }
 
-/// The beam of T 11.1: free, 200 K within half a second.
+/// The free beam of T 11.1, heated by 200 K within half a second.
 struct HotBeam {
   double length = 1, height = 0.1, expansion = 1e-4;
   int n = 1;
@@ -48,13 +48,13 @@ struct HotBeam {
                                    section, std::move(terms));
     fem::heat(body, heat());
     if (thermal_force)
-      out.add_link(std::make_unique<fem::ThermalForce>("thermal force", "beam", heat(),
-                                                       section.density * section.thickness));
+      out.add_force_element(std::make_unique<fem::ThermalForce>(
+          "thermal force", "beam", heat(), section.density * section.thickness));
     return out;
   }
 };
 
-/// Unknowns of the first body as rows (n_vectors x dim).
+/// Returns the unknowns of the first body as rows (n_vectors x dim).
 inline MatrixXd rows_of_body(const fem::Model& model, const VectorXd& q) {
   const fem::Element& e = *model.bodies()[0].element;
   return Eigen::Map<const VectorRows>(q.data() + model.bodies()[0].first_dof, e.n_vectors(),
@@ -65,15 +65,15 @@ inline VectorXd flat(const MatrixXd& rows) {
   return Eigen::Map<const VectorXd>(by_rows.data(), by_rows.size());
 }
 
-/// Largest elastic strain over points of the first body of a model in the plane, straight from
-/// ½ ((F/s)ᵀ(F/s) - 1).
+/// Returns the largest elastic strain over points of the first body of a model in the plane,
+/// directly from ½ ((F/s)ᵀ(F/s) - 1).
 inline double largest_strain(const fem::Model& model, const VectorXd& q, double s) {
   const fem::Element& element = *model.bodies()[0].element;
   const MatrixXd all = rows_of_body(model, q);
   fem::ShapeTable t;
   double out = 0;
   for (int e = 0; e < element.n_elements(); ++e) {
-    element.tabulate(e, 8, fem::Tabulate::gradient, {}, fem::FactorKind::none, t);
+    element.tabulate(e, 8, fem::Tabulate::gradient, {}, fem::ScaleFactorKind::none, t);
     const MatrixXd local = rows_of_element(element, all, e);
     for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
       const Eigen::RowVectorXd r_m = t.N_m.row(p) * local / s, r_n = t.N_n.row(p) * local / s;
@@ -84,14 +84,15 @@ inline double largest_strain(const fem::Model& model, const VectorXd& q, double 
   return out;
 }
 
-/// Angular momentum about the origin of the first body in the plane, ∫ ρb r × ṙ dA, point by point.
+/// Returns the angular momentum about the origin of the first body in the plane, ∫ ρb r × ṙ dA,
+/// point by point.
 inline double angular_momentum(const fem::Model& model, const fem::State& x) {
   const fem::Body& body = model.bodies()[0];
   const MatrixXd q = rows_of_body(model, x.q), v = rows_of_body(model, x.v);
   fem::ShapeTable t;
   double out = 0;
   for (int e = 0; e < body.element->n_elements(); ++e) {
-    body.element->tabulate(e, 6, fem::Tabulate::position, {}, fem::FactorKind::none, t);
+    body.element->tabulate(e, 6, fem::Tabulate::position, {}, fem::ScaleFactorKind::none, t);
     const MatrixXd r = t.N * rows_of_element(*body.element, q, e),
                    r_t = t.N * rows_of_element(*body.element, v, e);
     for (Eigen::Index p = 0; p < t.weight.size(); ++p)
@@ -101,21 +102,22 @@ inline double angular_momentum(const fem::Model& model, const fem::State& x) {
   return out;
 }
 
-/// s, down and up with a rate.
+/// Returns heat whose stretch s rises and falls with a rate.
 inline fem::Heat moving_heat() {
   return heat_of([](double t) {
     return fem::Motion{0.05 * std::sin(3 * t), 0.15 * std::cos(3 * t), -0.45 * std::sin(3 * t)};
   });
 }
 
-/// A small body of three elements.
-inline std::unique_ptr<fem::Element> element_in(fem::TermPlace place) {
-  if (place == fem::TermPlace::beam) return std::make_unique<fem::AncfBeam>(0.6, 0.1, 3);
-  return std::make_unique<fem::AncfPlate>(place == fem::TermPlace::plane ? 2 : 3, ShapeSet::h16,
-                                          even_lines(0.1, 0.5, 3), even_lines(-0.02, 0.05, 1));
+/// Returns a small body of three elements.
+inline std::unique_ptr<fem::Element> element_in(fem::TermDomain location) {
+  if (location == fem::TermDomain::beam) return std::make_unique<fem::AncfBeam>(0.6, 0.1, 3);
+  return std::make_unique<fem::AncfPlate>(location == fem::TermDomain::plane ? 2 : 3, ShapeSet::h16,
+                                          uniform_lines(0.1, 0.5, 3),
+                                          uniform_lines(-0.02, 0.05, 1));
 }
 
-/// A smooth state of all unknowns of an element away from the reference.
+/// Returns a smooth state of all unknowns of an element away from the reference.
 inline fem::Local state_of(const fem::Element& element, int e) {
   MatrixXd q = element.reference(), v = q;
   for (int k = 0; k < element.n_vectors(); ++k)

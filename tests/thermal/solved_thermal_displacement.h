@@ -7,8 +7,8 @@
 #include "fem/shapes/singular_values.h"
 #include "fem/thermal/thermal_displacement.h"
 
-/// The thermal displacement of a free body in the two ways of T, which solve for it: an independent
-/// check of the closed form that runs.
+/// The thermal displacement of a free body by the two methods of T, which solve systems of
+/// equations: an independent check of the closed form that the program uses.
 namespace flexmorph::fem {
 
 /// Returns M_rd = Σ_j ∫ ρb N_rd N_rdᵀ dA (n x n), N_rd = N - N(x_o), x_o first node of element j.
@@ -16,7 +16,7 @@ inline MatrixXd relative_mass(const Element& element, double area_density) {
   MatrixXd out = MatrixXd::Zero(element.n_vectors(), element.n_vectors());
   ShapeTable t;
   for (int e = 0; e < element.n_elements(); ++e) {
-    element.tabulate(e, 6, Tabulate::position, {}, FactorKind::mass, t);
+    element.tabulate(e, 6, Tabulate::position, {}, ScaleFactorKind::mass, t);
     MatrixXd relative = t.N;  // the first shape function is 1 at the first node
     relative.col(0).array() -= 1;
     const MatrixXd M_rd = relative.transpose() * (area_density * t.weight).asDiagonal() * relative;
@@ -43,7 +43,7 @@ inline void check_eliminated(const Element& element, const ThermalMatrices& m,
   for (const int k : eliminated) check_position(m, k);
 }
 
-/// Lengths per unit of the vector unknowns; without one of them.
+/// Returns the lengths per unit of the vector unknowns.
 inline VectorXd lengths(const Element& element) {
   VectorXd out(element.n_vectors());
   for (int k = 0; k < element.n_vectors(); ++k) out[k] = element.scale(k);
@@ -61,10 +61,11 @@ inline double condition_of(const MatrixXd& a) {
   return s[0] / s[s.size() - 1];
 }
 
-/// H_di (n x n - 1): all coordinates of one direction by the independent ones, with no translation,
-/// A_rᵀ M e = 0, T (10). The independent ones are all but `eliminated`, in their order.
+/// Returns H_di (n x n - 1): all coordinates of one direction as functions of the independent ones,
+/// without translation, A_rᵀ M e = 0, T (10). The independent ones are all but `eliminated`, in
+/// their order.
 /// @throws Error (input) unless `eliminated` is the number of a position: gradients do not
-/// translate, and most cannot be found from T (10) (r_y of a beam has S = 0).
+///         translate, and most cannot be found from T (10) (r_y of a beam has S = 0).
 inline MatrixXd sweeping_matrix(const ThermalMatrices& m, int eliminated) {
   check_position(m, eliminated);
   const Eigen::Index n = m.S.size();
@@ -74,18 +75,19 @@ inline MatrixXd sweeping_matrix(const ThermalMatrices& m, int eliminated) {
   return H;
 }
 
-/// e_Θ: what a free, uniform, isotropic growth by a = α ΔT adds to the unknowns.
+/// e_Θ: the change of the unknowns by a free, uniform, isotropic expansion by a = α ΔT.
 struct ThermalDisplacement {
-  MatrixXd value;        ///< (n x dim)
-  double condition = 0;  ///< of the matrix that was solved, unknowns scaled to lengths; worst
-                         ///< direction
+  MatrixXd value;  ///< Displacement (n x dim).
+  /// Largest condition number of the solved matrices over the directions, with unknowns scaled to
+  /// lengths.
+  double condition = 0;
 };
 
-/// T (7)-(11): M_H e_i = Hᵀ M_1 e_o, M_H = Hᵀ M_rd H, which is positive definite.
+/// Solves T (7)-(11): M_H e_i = Hᵀ M_1 e_o, M_H = Hᵀ M_rd H, which is positive definite.
 /// @param eliminated  number of the eliminated vector unknown for each direction (dim): one
 ///                    translation per direction and body
 /// @throws Error (input) for another number of them, or as sweeping_matrix(); (numerical) when M_H
-/// is not positive definite.
+///         is not positive definite.
 inline ThermalDisplacement thermal_displacement_by_sweeping(const Element& element, double a,
                                                             std::span<const int> eliminated) {
   const ThermalMatrices m = thermal_matrices(element, 1);
@@ -109,8 +111,9 @@ inline ThermalDisplacement thermal_displacement_by_sweeping(const Element& eleme
   return out;
 }
 
-/// T (12)-(15): Hᵀ I_u H e_i = Hᵀ M⁻¹ ∫ ρb N a (X - X_o) dA, I_u = 1 - M⁻¹ S S(x_o), x_o the first
-/// node of the body. (16), with x instead of X - X_o, holds for straight references only.
+/// Solves T (12)-(15): Hᵀ I_u H e_i = Hᵀ M⁻¹ ∫ ρb N a (X - X_o) dA, I_u = 1 - M⁻¹ S S(x_o), where
+/// x_o is the first node of the body. (16), with x instead of X - X_o, holds for straight
+/// references only.
 inline ThermalDisplacement thermal_displacement_by_mass(const Element& element, double a,
                                                         std::span<const int> eliminated) {
   const ThermalMatrices m = thermal_matrices(element, 1);
@@ -118,12 +121,12 @@ inline ThermalDisplacement thermal_displacement_by_mass(const Element& element, 
   const Eigen::Index n = m.S.size();
   const VectorXd scale = lengths(element);
   const MatrixXd D = scale.cwiseInverse().asDiagonal();
-  // M⁻¹ in unknowns that are lengths.
+  // M⁻¹ for unknowns that are lengths.
   const Eigen::LDLT<MatrixXd> mass(D * m.M * D);
   const int first = element.vectors(0)[0];  // x_o
   const MatrixXd I_u =
       MatrixXd::Identity(n, n) -
-      mass.solve(D * m.S) * VectorXd::Unit(n, first).transpose();  // scale of positions is 1
+      mass.solve(D * m.S) * VectorXd::Unit(n, first).transpose();  // the scale of positions is 1
   const MatrixXd relative = m.reference - m.A_r * m.reference.row(first);
   const MatrixXd b = a * mass.solve(D * (m.M * relative));
   ThermalDisplacement out;

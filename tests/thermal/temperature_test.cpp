@@ -1,5 +1,5 @@
-// Shows that profiles of temperature start at 0, settle at their rise, have the rates they say, and
-// name every time at which the rate or the acceleration jumps.
+// Shows that profiles of temperature start at 0, end at their rise, have the right rates, and list
+// every time at which the rate or the acceleration jumps.
 #include "fem/thermal/temperature.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using testing::error_of;
 using testing::first_difference;
-using testing::says;
+using testing::mentions;
 
 const char* const kSmooth[] = {"quartic", "cosine", "quintic", "linear"};
 
@@ -38,7 +38,7 @@ TEST(Temperature, RisesFromNothingToAll) {
                   1e-5 * 80);
     }
   }
-  // Half-way, by hand.
+  // The values at half of the rise are calculated by hand.
   const auto half = [](Profile p) { return make_temperature({p, 1, 0, 1})(0.5).value; };
   EXPECT_NEAR(half(Profile::quartic), 6. / 4 - 1 + 3. / 16, 1e-15);
   EXPECT_NEAR(half(Profile::cosine), 0.5, 1e-15);
@@ -53,12 +53,13 @@ TEST(Temperature, StepIsThereFromItsStart) {
   EXPECT_EQ(T(0).rate, 0);
 }
 
-// Values just before and just after: what jumps is a kink, and what is no kink does not jump.
+// Values just before and just after a time show that every jump is a listed discontinuity, and that
+// no listed discontinuity is without a jump.
 TEST(Temperature, KinksAreWhereSomethingJumps) {
   for (const char* name : {"quartic", "cosine", "quintic", "linear", "step"}) {
     const TemperatureRise rise{profile_of(name), 80, 0.3, 0.7};
     const auto T = make_temperature(rise);
-    const std::vector<double> list = kinks(rise);
+    const std::vector<double> list = discontinuities(rise);
     for (const double t : {0.3, 0.55, 1.0}) {
       const Motion before = T(t - 1e-7), after = T(t + 1e-7);
       const double jump = std::abs(after.value - before.value) +
@@ -71,14 +72,14 @@ TEST(Temperature, KinksAreWhereSomethingJumps) {
   }
 }
 
-// Steps land there, also where start + settle is rounded: at a kink it is what it is behind it, and
-// at the double before what it is before.
+// Time steps end exactly at discontinuities, also where start + duration is rounded: at a
+// discontinuity the values are those after it, and at the previous double those before it.
 TEST(Temperature, IsAtAKinkWhatItIsBehindIt) {
   for (const double start : {0.0, 0.1, 0.3, 1.7}) {
     const TemperatureRise rise{Profile::cosine, 1, start, 0.7};
     const auto T = make_temperature(rise);
     const double jump = 4.9348022 / 0.49;  // π²/2 / settle²
-    const double first = kinks(rise).front(), last = kinks(rise).back();
+    const double first = discontinuities(rise).front(), last = discontinuities(rise).back();
     EXPECT_EQ(T(last).acceleration, 0);
     EXPECT_NEAR(T(std::nextafter(last, 0)).acceleration, -jump, 1e-5);
     EXPECT_NEAR(T(first).acceleration, jump, 1e-5);
@@ -96,18 +97,18 @@ TEST(Temperature, OnlyBendsCarryThermalForces) {
 }
 
 TEST(Temperature, RefusesNonsense) {
-  EXPECT_TRUE(says(error_of(Error::Kind::input, [] { profile_of("sudden"); }),
-                   "known are: cosine, linear, quartic, quintic, step"));
-  EXPECT_TRUE(says(error_of(Error::Kind::input,
-                            [] {
-                              make_temperature({Profile::cosine, 1, 0, 0});
-                            }),
-                   "settling"));
-  EXPECT_TRUE(says(error_of(Error::Kind::input,
-                            [] {
-                              make_temperature({Profile::cosine, std::nan(""), 0, 1});
-                            }),
-                   "finite"));
+  EXPECT_TRUE(mentions(error_of(Error::Kind::input, [] { profile_of("sudden"); }),
+                       "cosine, linear, quartic, quintic, step"));
+  EXPECT_TRUE(mentions(error_of(Error::Kind::input,
+                                [] {
+                                  make_temperature({Profile::cosine, 1, 0, 0});
+                                }),
+                       "settling"));
+  EXPECT_TRUE(mentions(error_of(Error::Kind::input,
+                                [] {
+                                  make_temperature({Profile::cosine, std::nan(""), 0, 1});
+                                }),
+                       "finite"));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
-// Shows that T's two ways to the thermal displacement, by sweeping (7)-(11) and by the inverse mass
-// matrix (12)-(15), give the closed form a (e_o - A_r X_cm) for beams and plates, whatever
-// positions are eliminated; that M_H is positive definite; which printed matrices of T are right
-// ((33), (37), (A.4), (A.7), (A.12)) and which are not ((38), (A.13), (A.14), and (16) where the
-// reference is not straight).
+// Shows that both methods of T for the thermal displacement, by sweeping (7)-(11) and by the
+// inverse mass matrix (12)-(15), give the closed form a (e_o - A_r X_cm) for beams and plates for
+// any eliminated positions; that M_H is positive definite; which printed matrices of T are right
+// ((33), (37), (A.4), (A.7), (A.12)) and which are wrong ((38), (A.13), (A.14), and (16) for
+// references that are not straight).
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -19,17 +19,17 @@ namespace flexmorph::fem {
 namespace {
 
 using testing::error_of;
-using testing::says;
+using testing::mentions;
 using testing::ShapeSet;
 
 constexpr double kRise = 0.02;
 
 AncfBeam beam_of(int n, double angle, double length = 1, double height = 0.1) {
   if (angle == 0) return {length, height, n};
-  return {even_nodes(length, n), height, arc_reference(length, angle, n)};
+  return {uniform_nodes(length, n), height, arc_reference(length, angle, n)};
 }
 
-/// Positions of a mesh.
+/// Returns the numbers of the positions of a mesh.
 std::vector<int> positions(const Element& e) {
   std::vector<int> out;
   for (int k = 0; k < e.n_vectors(); ++k)
@@ -37,7 +37,7 @@ std::vector<int> positions(const Element& e) {
   return out;
 }
 
-/// Largest difference as displacements, over the largest displacement.
+/// Returns the largest difference as a displacement, relative to the largest displacement.
 double relative(const Element& e, const MatrixXd& is, const MatrixXd& should) {
   double difference = 0, largest = 0;
   for (int k = 0; k < e.n_vectors(); ++k) {
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Beams, ThreeWays,
                                            Case{2, std::numbers::pi / 2},
                                            Case{6, std::numbers::pi / 2}));
 
-// Condition numbers are below 1e6, so that solutions are good to 1e-10 at worst; they agree to
+// Condition numbers are below 1e6, so that solutions have errors of 1e-10 at most; they agree to
 // 1e-11.
 TEST_P(ThreeWays, AgreeWhateverIsEliminated) {
   const AncfBeam beam = beam_of(GetParam().n, GetParam().angle);
@@ -83,7 +83,8 @@ TEST_P(ThreeWays, AgreeWhateverIsEliminated) {
   EXPECT_LT(worst_mass, 1e6);
 }
 
-// What the closed form says: every point grows from the centre of mass, found here by its own sum.
+// In the closed form every point moves away from the centre of mass, which is found here by a
+// separate sum.
 TEST_P(ThreeWays, EveryPointGrowsFromTheCentreOfMass) {
   const AncfBeam beam = beam_of(GetParam().n, GetParam().angle);
   const MatrixXd closed = thermal_displacement(beam, kRise);
@@ -91,14 +92,14 @@ TEST_P(ThreeWays, EveryPointGrowsFromTheCentreOfMass) {
   double mass = 0;
   Eigen::RowVector2d centre(0, 0);
   for (int e = 0; e < beam.n_elements(); ++e) {
-    beam.tabulate(e, 10, Tabulate::position, {}, FactorKind::none, t);
+    beam.tabulate(e, 10, Tabulate::position, {}, ScaleFactorKind::none, t);
     mass += t.weight.sum();
     const MatrixXd local = testing::rows_of_element(beam, beam.reference(), e);
     centre += t.weight.transpose() * (t.N * local);
   }
   centre /= mass;
   for (int e = 0; e < beam.n_elements(); ++e) {
-    beam.tabulate(e, 4, Tabulate::position, {}, FactorKind::none, t);
+    beam.tabulate(e, 4, Tabulate::position, {}, ScaleFactorKind::none, t);
     const MatrixXd X = t.N * testing::rows_of_element(beam, beam.reference(), e),
                    u = t.N * testing::rows_of_element(beam, closed, e);
     for (Eigen::Index p = 0; p < X.rows(); ++p)
@@ -117,7 +118,7 @@ TEST(ThermalDisplacement, OfPlatesThreeWays) {
         const std::vector<int> eliminated(static_cast<size_t>(dim), i);
         const auto sweeping = thermal_displacement_by_sweeping(plate, kRise, eliminated),
                    mass = thermal_displacement_by_mass(plate, kRise, eliminated);
-        // Good to the round-off of the condition, which is larger than that of beams.
+        // The error is round-off times the condition number, which is larger than for beams.
         EXPECT_LT(relative(plate, sweeping.value, closed), 1e-15 * sweeping.condition);
         EXPECT_LT(relative(plate, mass.value, closed), 1e-10);
         std::cout << "  plate " << dim << "d h" << plate.n_shapes() << ": condition of M_H "
@@ -131,12 +132,13 @@ TEST(ThermalDisplacement, OfPlatesThreeWays) {
 TEST(ThermalDisplacement, GrowsFromTheCentreOfTheDesignedMass) {
   const AncfPlate plate(2, ShapeSet::h16, {{0.1, {}}, {0.3, {}}, {0.45, {}}},
                         {{-0.05, {}}, {0.07, {}}});
-  const Factors factors = testing::random_factors(3);
+  const ScaleFactors factors = testing::random_factors(3);
   const ThermalMatrices m = thermal_matrices(plate, 27, factors);
   double mass = 0, first = 0;
   for (int e = 0; e < 2; ++e) {
     const auto sum = [&](auto f) {
-      return 27 * testing::integrate(plate, e, factors, FactorKind::mass, Tabulate::position, f);
+      return 27 *
+             testing::integrate(plate, e, factors, ScaleFactorKind::mass, Tabulate::position, f);
     };
     mass += sum([](const ShapeTable&) { return 1.0; });
     first += sum([&](const ShapeTable& t) {
@@ -150,10 +152,11 @@ TEST(ThermalDisplacement, GrowsFromTheCentreOfTheDesignedMass) {
 TEST(ThermalDisplacement, RefusesOtherEliminations) {
   const AncfBeam beam(1, 0.1, 2);
   const auto refused = [&](std::vector<int> eliminated, const std::string& why) {
-    EXPECT_TRUE(says(error_of(Error::Kind::input,
-                              [&] { thermal_displacement_by_sweeping(beam, 0.01, eliminated); }),
-                     why));
-    EXPECT_TRUE(says(
+    EXPECT_TRUE(
+        mentions(error_of(Error::Kind::input,
+                          [&] { thermal_displacement_by_sweeping(beam, 0.01, eliminated); }),
+                 why));
+    EXPECT_TRUE(mentions(
         error_of(Error::Kind::input, [&] { thermal_displacement_by_mass(beam, 0.01, eliminated); }),
         why));
   };
@@ -164,10 +167,10 @@ TEST(ThermalDisplacement, RefusesOtherEliminations) {
   refused({0, 0, 3, 3}, "one translation in each");  // a pair per element
   const AncfPlate moving = testing::swinging_plate(ShapeSet::h16);
   EXPECT_TRUE(
-      says(error_of(Error::Kind::input, [&] { thermal_displacement(moving, 0.01); }), "lines"));
+      mentions(error_of(Error::Kind::input, [&] { thermal_displacement(moving, 0.01); }), "lines"));
 }
 
-// The matrices T prints for one straight element, one direction of them.
+// The matrices that T prints for one straight element, one direction of them.
 class Printed : public ::testing::Test {
  protected:
   static constexpr double l = 0.7, h = 0.2;
@@ -208,9 +211,9 @@ TEST_F(Printed, CoefficientsOfTheAlternateApproachAreRight) {  // (33), its inve
   MatrixXd inverse = MatrixXd::Identity(5, 5);
   inverse.row(2) << -l / 12, 0, 0.5, l / 12, 0;
   EXPECT_LT(largest(testing::inverse(system) - inverse), 1e-12);
-  // (36) by quadrature, then (37).
+  // (36) comes from quadrature, then (37) follows.
   ShapeTable t;
-  beam.tabulate(0, 8, Tabulate::position, {}, FactorKind::none, t);
+  beam.tabulate(0, 8, Tabulate::position, {}, ScaleFactorKind::none, t);
   VectorXd I_x = VectorXd::Zero(6), I_y = I_x, in_x(6), in_y(6);
   for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
     I_x += 5 * t.weight[p] * t.material[static_cast<size_t>(p)].x() * t.N.row(p).transpose();
@@ -227,15 +230,16 @@ TEST_F(Printed, CoefficientsOfTheAlternateApproachAreRight) {  // (33), its inve
                  is_y = testing::solve(system, H.transpose() * (M_inverse * I_y));
   EXPECT_LT(largest(is_x - x), 1e-11);
   EXPECT_LT(largest(is_y - y), 1e-11);
-  // (38) prints H times it as [-l/2 1 0 l/2 0]: five blocks. The lost one is the 1 of r_x at the
-  // second node.
+  // (38) prints H times it as [-l/2 1 0 l/2 0], which are five entries. The missing entry is the 1
+  // of r_x at the second node.
   VectorXd all(6);
   all << -l / 2, 1, 0, l / 2, 1, 0;
   EXPECT_LT(largest(H * is_x - all), 1e-11);
 }
 
 TEST_F(Printed, ProductsWithTheSweepingMatrixAreWrong) {  // (A.13), (A.14)
-  // S_rd H at a point: printed [s₂ s₃ 2s₄ s₅ s₆], right with ± l/6 s₄ at the slopes.
+  // S_rd H at a point is printed as [s₂ s₃ 2s₄ s₅ s₆]; the right one has ± l/6 s₄ added at the
+  // slopes.
   ShapeTable t;
   beam.locate({0.4 * l, 0.1 * h}, Tabulate::position, t);
   Eigen::RowVectorXd S_rd = t.N.row(0);
@@ -257,23 +261,23 @@ TEST_F(Printed, ProductsWithTheSweepingMatrixAreWrong) {  // (A.13), (A.14)
       -l * l / 140, 0, -11 * l / 105, l * l / 105, 0,    //
       0, h * h / 72, 0, 0, h * h / 36;
   const MatrixXd exact = H.transpose() * of_beam * H / mass, error = (exact - M_H).eval();
-  // Right: all of r_y and of r₂ with itself.
+  // These entries are right: all of r_y, and r₂ with itself.
   for (const auto& [i, j] : {std::pair{1, 1}, {1, 4}, {4, 4}, {2, 2}, {0, 1}, {2, 4}})
     EXPECT_NEAR(exact(i, j), M_H(i, j), 1e-14);
-  // Wrong: all of the slopes r_x, with each other and with r₂.
+  // These entries are wrong: all of the slopes r_x, with each other and with r₂.
   for (const auto& [i, j] : {std::pair{0, 0}, {0, 2}, {0, 3}, {2, 3}, {3, 3}})
     EXPECT_GT(std::abs(error(i, j) / exact(i, j)), 0.3) << i << ' ' << j;
   std::cout << "  (A.14) over what is right: (1,1) " << M_H(0, 0) / exact(0, 0) << ", (1,3) "
             << M_H(0, 2) / exact(0, 2) << ", (1,4) " << M_H(0, 3) / exact(0, 3) << ", (3,4) "
             << M_H(2, 3) / exact(2, 3) << ", (4,4) " << M_H(3, 3) / exact(3, 3) << '\n';
-  // The printed one would give another answer.
+  // The printed matrix would give another result.
   const VectorXd b = H.transpose() * of_beam * m.reference.col(0) / mass;
   const VectorXd e = testing::solve(M_H, b), right_e = testing::solve(exact, b);
   EXPECT_LT((right_e - m.from_centre().col(0).tail(5)).norm(), 1e-12);
   EXPECT_GT((e - right_e).norm(), 0.05);
 }
 
-// (16) writes a J_o x where a (X - X_o) belongs: the same only where J_o is constant.
+// (16) has a J_o x instead of a (X - X_o); both are equal only if J_o is constant.
 TEST(PrintedEquation16, HoldsForStraightReferencesOnly) {
   for (const double angle : {0.0, std::numbers::pi / 2}) {
     const AncfBeam beam = beam_of(1, angle);
@@ -283,9 +287,9 @@ TEST(PrintedEquation16, HoldsForStraightReferencesOnly) {
     const MatrixXd I_u =
         MatrixXd::Identity(6, 6) - M_inverse * m.S * VectorXd::Unit(6, 0).transpose();
     ShapeTable t;
-    beam.tabulate(0, 12, Tabulate::gradient, {}, FactorKind::none, t);
+    beam.tabulate(0, 12, Tabulate::gradient, {}, ScaleFactorKind::none, t);
     MatrixXd right = MatrixXd::Zero(6, 2);
-    // J_o: derivatives of X by x and y, from differences of located points.
+    // J_o contains the derivatives of X by x and y, from differences of located points.
     for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
       const Vec2 x = t.material[static_cast<size_t>(p)];
       const auto X = [&](const Vec2& at) {

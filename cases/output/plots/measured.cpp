@@ -21,16 +21,18 @@ struct Group {
 const std::vector<Group>& groups() {
   static const std::vector<Group> kGroups = {
       {"temperature", "temperature rise [K]", {{"temperature", ""}}},
-      {"along x",
+      {"displacement along x",
        "displacement [m]",
-       {{"root_ux", "root"}, {"end_ux", "free end"}, {"free_ux", "closed form, free", true}}},
-      {"along y",
+       {{"root_ux", "root"}, {"end_ux", "free end"}, {"free_ux", "free body, closed form", true}}},
+      {"displacement along y",
        "displacement [m]",
-       {{"root_uy", "root"}, {"end_uy", "free end"}, {"free_uy", "closed form, free", true}}},
-      {"slopes at the free end", "length [-]", {{"end_rx", "|r_x|"}, {"end_ry", "|r_y|"}}},
+       {{"root_uy", "root"}, {"end_uy", "free end"}, {"free_uy", "free body, closed form", true}}},
+      {"position gradients at the free end",
+       "length [-]",
+       {{"end_rx", "|r_x|"}, {"end_ry", "|r_y|"}}},
       {"velocity of the free end", "velocity [m/s]", {{"end_vx", "x"}, {"end_vy", "y"}}},
-      {"middle", "deflection [m]", {{"midpoint_deflection", ""}}},
-      {"elastic strain", "largest [-]", {{"max_elastic_strain", ""}}}};
+      {"deflection of the midpoint", "deflection [m]", {{"midpoint_deflection", ""}}},
+      {"largest elastic strain", "strain [-]", {{"max_elastic_strain", ""}}}};
   return kGroups;
 }
 
@@ -87,7 +89,7 @@ std::string measured_plot(const MotionRecord& motion) {
   kinetic.curves.push_back({"model", time, motion.table.at(kKineticColumn)});
   for (const std::string& body : bodies)
     if (const std::vector<double>* free = motion.table.find(body + ".free_kinetic")) {
-      io::Curve curve{body + ", closed form, free", time, *free};
+      io::Curve curve{body + " (free body, closed form)", time, *free};
       curve.dashed = true;
       kinetic.curves.push_back(std::move(curve));
     }

@@ -48,7 +48,7 @@ std::string inputs_plot(const Scene& scene) {
   const UsedDrives used(scene);
   io::Figure figure;
   figure.title =
-      scene.trajectory ? "Inputs for the desired motion of " + scene.trajectory->body : "Inputs";
+      scene.trajectory ? "Inputs for the trajectory of " + scene.trajectory->body : "Inputs";
   const auto add = [&](const std::vector<std::string>& names, const char* label) {
     if (names.empty()) return;
     io::Panel panel;
@@ -75,7 +75,7 @@ std::string error_plot(const Scene& scene, const MotionRecord& design,
   if (!scene.trajectory) return "";
   const std::string& body = scene.trajectory->body;
   io::Figure figure;
-  figure.title = "Error of " + body + " against its path";
+  figure.title = "Deviation of " + body + " from its trajectory";
   for (const auto& [quantity, label] : {std::pair{".delta_x", "\xCE\x94x [m]"},
                                         {".delta_y", "\xCE\x94y [m]"},
                                         {".delta_angle", "\xCE\x94 angle [rad]"}}) {
@@ -90,17 +90,17 @@ std::string error_plot(const Scene& scene, const MotionRecord& design,
       }
     };
     add(uniform ? "optimized" : "", design, false);
-    if (uniform) add("uniform, same volume", *uniform, true);
+    if (uniform) add("uniform material", *uniform, true);
     figure.panels.push_back(std::move(panel));
   }
   return io::plot_svg(figure);
 }
 
-std::string moments_plot(const MotionRecord& motion) {
+std::string snapshot_plot(const MotionRecord& motion) {
   const bool any =
       std::any_of(motion.snapshots.begin(), motion.snapshots.end(),
                   [](const io::PlaneFrame& f) { return !f.plates.empty() || !f.outlines.empty(); });
-  return any ? io::plane_frames_svg("Mechanism", motion.snapshots) : "";
+  return any ? io::plane_frames_svg("Snapshots of the mechanism", motion.snapshots) : "";
 }
 
 std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion) {

@@ -35,7 +35,7 @@ std::string error_plot(const Scene& scene, const MotionRecord& design,
                        const std::optional<MotionRecord>& uniform);
 
 /// Draws snapshots of the mechanism at a few times: P Fig. 30.
-std::string moments_plot(const MotionRecord& motion);
+std::string snapshot_plot(const MotionRecord& motion);
 
 /// Draws forces, moments and powers of named joints against time.
 std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion);

@@ -29,13 +29,13 @@ void add_observed(const io::Axis& x, const std::vector<double>& at, const Series
 
 std::string convergence_plot(const RunFolder::History& h) {
   io::Figure figure;
-  figure.title = "Design of " + h.body;
+  figure.title = "Convergence of the design of " + h.body;
   io::Panel compliance;
   compliance.x.label = "iteration";
   compliance.y = {"compliance [J]", true, {}, {}};
-  compliance.curves.push_back({"blurred", h.row, h.compliance, true, false, false});
-  if (!h.sharp_row.empty())
-    compliance.curves.push_back({"sharp", h.sharp_row, h.sharp_compliance, false, true, false});
+  compliance.curves.push_back({"smoothed", h.row, h.compliance, true, false, false});
+  if (!h.crisp_row.empty())
+    compliance.curves.push_back({"crisp", h.crisp_row, h.crisp_compliance, false, true, false});
   io::Panel volume;
   volume.x.label = "iteration";
   volume.y.label = "volume fraction";
@@ -63,7 +63,7 @@ std::string deflection_plot(const MotionRecord& design,
         {uniform ? "optimized" : "", design.time(), design.table.values[c], true, false, false});
     if (uniform)
       panel.curves.push_back(
-          {"uniform, same volume", uniform->time(), uniform->table.at(name), true, false, true});
+          {"uniform material", uniform->time(), uniform->table.at(name), true, false, true});
     figure.panels.push_back(panel);
   }
   return io::plot_svg(figure);
@@ -71,7 +71,7 @@ std::string deflection_plot(const MotionRecord& design,
 
 std::string observed_plot(const MotionRecord& motion) {
   io::Figure figure;
-  figure.title = "Observed motion";
+  figure.title = "Motion of observed points";
   io::Axis time;
   time.label = "time [s]";
   add_observed(time, motion.time(), motion.table, "position [m]", figure);
@@ -107,12 +107,12 @@ std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
     out.curves.push_back({"", motion.time(), y, true, false, false});
     figure.panels.push_back(out);
   };
-  panel("kinetic [J]", table.at(kKineticColumn));
-  panel("strain [J]", table.at(kStrainColumn));
-  if (scene.in_space() || scene.gravity) panel("potential [J]", table.at(kPotentialColumn));
+  panel("kinetic energy [J]", table.at(kKineticColumn));
+  panel("strain energy [J]", table.at(kStrainColumn));
+  if (scene.in_space() || scene.gravity) panel("potential energy [J]", table.at(kPotentialColumn));
   for (const size_t c : table.of_group(ColumnGroup::term))
     panel(table.columns[c].name + " [J]", table.values[c]);
-  panel("defect of the balance [J]", table.at(kDefectColumn));
+  panel("energy error [J]", table.at(kEnergyErrorColumn));
   return io::plot_svg(figure);
 }
 

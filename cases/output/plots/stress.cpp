@@ -32,8 +32,9 @@ double all_but_peaks(const verification::OutlineVerification& j, const std::vect
   return 0;
 }
 
-std::string times(double magnification) {
-  return magnification == 1 ? "as it is" : io::to_text(magnification, 3) + " times as far";
+std::string displacement_text(double magnification) {
+  return magnification == 1 ? "true displacements"
+                            : "displacements times " + io::to_text(magnification, 3);
 }
 
 }  // namespace
@@ -50,9 +51,9 @@ std::string stress_plot(const VerifiedOutline& outline) {
   picture.magnification = io::clear_magnification(j.mesh, picture.displacement);
   picture.unit = "Pa";
   picture.left_out = j.omitted_triangles;
-  picture.title = "von Mises stress under '" + j.shown_load + "', " +
-                  io::to_text(j.shown_stress.value, 3) +
-                  " Pa at most away from where it acts; displaced " + times(picture.magnification);
+  picture.title = "von Mises stress under load '" + j.shown_load + "', at most " +
+                  io::to_text(j.shown_stress.value, 3) + " Pa away from loads and supports; " +
+                  displacement_text(picture.magnification);
   return io::part_svg(j.mesh, picture);
 }
 

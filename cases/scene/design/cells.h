@@ -27,7 +27,7 @@ inline std::string unmatched_cells(const Scene& scene, int parts) {
     const bool plates = a.row->across && b.row->across;
     if (plates && (designed(a) || designed(b)) && across(a) != across(b))
       return "'" + b.name + "' is welded to '" + a.name +
-             "' node on node, but on the cells of the design their nodes do not meet";
+             "' node to node, but their nodes do not coincide on the cells of the design";
   }
   return {};
 }

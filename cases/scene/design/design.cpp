@@ -11,10 +11,11 @@
 
 namespace flexmorph::cases {
 
-const io::Key& design_keys::kCells = io::key("design", "cells")
-                                         .integers("a number of cells", 1, 100'000, 2, 2)
-                                         .otherwise_as("`cell` is given")
-                                         .says("Or the number of cells along and across.");
+const io::Key& design_keys::kCells =
+    io::key("design", "cells")
+        .integers("a number of cells", 1, 100'000, 2, 2)
+        .otherwise_as("required unless `cell` is given")
+        .description("Number of cells of the design along and across.");
 
 namespace {
 
@@ -26,8 +27,8 @@ using io::positive;
 using io::Table;
 using io::to_text;
 
-constexpr double kMostCells = 4e6;
-constexpr int kMostBoxes = 100'000;  // boxes of the initial layout, in each direction
+constexpr double kMaxCells = 4e6;
+constexpr int kMaxBoxes = 100'000;  // boxes of the initial layout, in each direction
 
 /// Returns the range (0, upper] of a fraction.
 io::Quantity fraction(std::string noun, double upper = 1) {
@@ -38,110 +39,113 @@ io::Quantity fraction(std::string noun, double upper = 1) {
 
 const Key& kBody = io::key("design", "body")
                        .name_of("a body")
-                       .otherwise_as("the [domain] of a plate at rest")
-                       .says("What is designed.");
+                       .otherwise_as("the plate of the [domain]; required without a [domain]")
+                       .description("Body that is designed.");
 const Key& kCell = io::key("design", "cell")
                        .number(positive("the size of a cell", "m"))
-                       .otherwise_as("`cells` is given")
-                       .says("The size of a cell of the design; it divides length and width.");
-const Key& kComponents = io::key("design", "components")
-                             .integers("a number of boxes of two components", 1, kMostBoxes, 2, 2)
-                             .says("Boxes of two crossing components, along and across.");
-const Key& kMinThickness = io::key("design", "min_thickness")
-                               .number({.noun = "a smallest half-thickness fits into the width: it",
-                                        .unit = "m",
-                                        .lower = 0,
-                                        .lower_open = true})
-                               .otherwise_as("a cell")
-                               .says("Lower bound of the half-thicknesses of components.");
-const Key& kMinFeature = io::key("design", "min_feature")
-                             .number(not_negative("a smallest feature", "m"))
-                             .word("a smallest feature in words", {"twice_min_thickness"})
-                             .otherwise_as("twice `min_thickness`; of `tdf = \"paper\"` 0")
-                             .says("Smallest solid feature of the union of components; 0: any.");
+                       .otherwise_as("required unless `cells` is given")
+                       .description("Size of a cell; it divides the length and width of the body.");
+const Key& kComponents =
+    io::key("design", "components")
+        .integers("a number of boxes of two components", 1, kMaxBoxes, 2, 2)
+        .description("Number of boxes along and across, each with two initial components.");
+const Key& kMinThickness =
+    io::key("design", "min_thickness")
+        .number({.noun = "a smallest half-thickness", .unit = "m", .lower = 0, .lower_open = true})
+        .otherwise_as("the size of a cell")
+        .description("Lower limit of the half-thickness of components.");
+const Key& kMinFeature =
+    io::key("design", "min_feature")
+        .number(not_negative("a smallest feature", "m"))
+        .word("a smallest feature in words", {"twice_min_thickness"})
+        .otherwise_as("twice `min_thickness`; 0 for `tdf = \"paper\"`")
+        .description("Minimum width of solid features of the union of components; 0: no limit.");
 const Key& kMinGap = io::key("design", "min_gap")
                          .number(not_negative("a smallest gap", "m"))
-                         .otherwise_as("half of `min_feature`, two cells or more")
-                         .says("Smallest gap between material of the union.");
-const Key& kFilletRadius = io::key("design", "fillet_radius")
-                               .number(not_negative("the radius of fillets", "m"))
-                               .otherwise_as("0.8 of `min_feature`")
-                               .says(
-                                   "Of the inner corners of the part, as far as they fit, whose "
-                                   "outlines are smoothed then; 0: none.");
+                         .otherwise_as("`min_feature` / 2, at least 2 cells; 0 if it is 0")
+                         .description("Minimum width of gaps between components; 0: no limit.");
+const Key& kFilletRadius =
+    io::key("design", "fillet_radius")
+        .number(not_negative("the radius of fillets", "m"))
+        .otherwise_as("0.8 `min_feature`")
+        .description("Radius of fillets in inner corners of the final, smoothed part; 0: none.");
 const Key& kHalfLength = io::key("design", "half_length")
                              .number(positive("a half-length", "m"))
-                             .otherwise_as("half the diagonal of a box")
-                             .says("Of the initial components.");
+                             .otherwise_as("half of the diagonal of a box")
+                             .description("Half-length of the initial components.");
 const Key& kHalfThickness = io::key("design", "half_thickness")
                                 .number(not_negative("a half-thickness", "m"))
-                                .otherwise_as("what fills about the allowed volume")
-                                .says("Of the initial components.");
+                                .otherwise_as("a value that fills about the allowed volume")
+                                .description("Half-thickness of the initial components.");
 const Key& kStart = io::key("design", "start")
                         .text("a file of components")
-                        .otherwise_as("the boxes")
-                        .says("A `components.csv` to start from.");
-const Key& kJitter = io::key("design", "jitter")
-                         .number(between("a jitter", "", 0, 1))
-                         .otherwise(0.0)
-                         .says("Moves the initial components at random, in parts of their sizes.");
+                        .otherwise_as("the boxes of `components`")
+                        .description("File of the initial components, such as `components.csv`.");
+const Key& kJitter =
+    io::key("design", "jitter")
+        .number(between("a jitter", "", 0, 1))
+        .otherwise(0.0)
+        .description("Random change of the initial components, as a fraction of their sizes.");
 const Key& kSeed = io::key("design", "seed")
                        .integer("a seed", 0, 1'000'000'000)
                        .otherwise(1)
-                       .says("Of the jitter.");
+                       .description("Seed of the random number generator used by `jitter`.");
 const Key& kStarts =
     io::key("design", "starts")
         .integer("a number of starts", 1, 100)
         .otherwise(1)
-        .says("The best of so many, further ones jittered, goes on to the last stage.");
+        .description(
+            "Number of initial layouts, one given, others random; the best one continues.");
 const io::Choice<WantedSymmetry> kSymmetry(
     io::key("design", "symmetry")
         .otherwise("auto")
-        .says("`x` mirrors in the middle line parallel to the y axis; `auto`: where all else is."),
+        .description("Symmetry; `x`: about the middle line parallel to y; `auto`: as the scene and "
+                     "the start permit."),
     "a symmetry",
     {{"auto", {}},
      {"none", {.automatic = false}},
      {"x", {.automatic = false, .x = true}},
      {"y", {.automatic = false, .y = true}},
      {"both", {.automatic = false, .x = true, .y = true}}});
-const Key& kDespiteLoads = io::key("design", "symmetry_despite_loads")
-                               .boolean()
-                               .otherwise(false)
-                               .says("Enforces `symmetry` although loads are not symmetric.");
+const Key& kDespiteLoads =
+    io::key("design", "symmetry_despite_loads")
+        .boolean()
+        .otherwise(false)
+        .description("True if `symmetry` is enforced although the loads are not symmetric.");
 const io::Choice<TdfSettings::Kind> kTdf(
-    io::key("design", "tdf").otherwise("distance").says("Topology description function."), "a TDF",
-    {{"distance", TdfSettings::Kind::distance}, {"paper", TdfSettings::Kind::paper}});
+    io::key("design", "tdf").otherwise("distance").description("Topology description function."),
+    "a TDF", {{"distance", TdfSettings::Kind::distance}, {"paper", TdfSettings::Kind::paper}});
 const Key& kBand = io::key("design", "band")
                        .numbers(positive("half the width of the band", "cells"))
                        .otherwise(std::vector<double>{2.5, 1.5})
-                       .says("Half the width of the blur, a stage each, coarse to fine.");
+                       .description("Half-widths of the smoothing band, from coarse to fine.");
 const Key& kSharpness = io::key("design", "sharpness")
                             .number(positive("a sharpness", "1/cell"))
                             .otherwise(3.75)
-                            .says("Of the smooth maximum that unites components.");
+                            .description("Sharpness of the smooth maximum that unites components.");
 const Key& kErosionWidth =
     io::key("design", "erosion_width")
         .number(between("an erosion", "", 0, 0.5))
-        .otherwise_as("0.25; of `tdf = \"paper\"` 0")
-        .says("Stage 2 makes components thinner by this part of `min_feature`: it closes slits.");
+        .otherwise_as("0.25; 0 for `tdf = \"paper\"`")
+        .description("Erosion in stage 2, as a fraction of `min_feature`; it closes slits.");
 const Key& kAlpha = io::key("design", "alpha")
-                        .number(fraction("the Heaviside function of the void", 0.5))
+                        .number(fraction("a value of the Heaviside function in the void", 0.5))
                         .otherwise(1e-3)
-                        .says("The Heaviside function of the void.");
+                        .description("Value of the Heaviside function in the void.");
 const Key& kStiffnessVoid = io::key("design", "stiffness_void")
-                                .number(fraction("a stiffness factor"))
+                                .number(fraction("a stiffness scale factor"))
                                 .otherwise(1e-4)
-                                .says("Stiffness of the void in motions, in parts of material.");
+                                .description("Stiffness scale factor of the void in motions.");
 const Key& kMassVoid = io::key("design", "mass_void")
-                           .number(fraction("a mass factor"))
+                           .number(fraction("a mass scale factor"))
                            .otherwise(1e-3)
-                           .says("Mass of the void in motions, in parts of material.");
+                           .description("Mass scale factor of the void in motions.");
 
-const io::Choice<bool> kSharesMass(
-    io::key("design", "coupling")
-        .otherwise("none")
-        .says("`shared_mass`: one problem, and one budget of mass, of all that say so."),
-    "a coupling", {{"none", false}, {"shared_mass", true}});
+const io::Choice<bool> kSharesMass(io::key("design", "coupling")
+                                       .otherwise("none")
+                                       .description("`shared_mass`: one problem with one limit of "
+                                                    "the mass for all designs with this setting."),
+                                   "a coupling", {{"none", false}, {"shared_mass", true}});
 
 /// Returns the plate of a static scene as a body that does not move.
 Body plate_of(const Domain& domain) {
@@ -156,31 +160,32 @@ Grid read_grid(const Table& t, const Body& body, double end) {
   const double length = body.longest(end);
   Grid grid{.x0 = 0, .y0 = -0.5 * body.width, .width = length, .height = body.width};
   if (t.has(design_keys::kCells) == t.has(kCell))
-    t.fail("a design has cells of the size `cell`, or `cells`");
+    t.fail("a design needs either a cell size `cell`, or numbers of cells `cells`");
   if (t.has(design_keys::kCells)) {
     const std::vector<int> cells = t.integers(design_keys::kCells);
     grid.nx = cells[0];
     grid.ny = cells[1];
-    if (1.0 * grid.nx * grid.ny > kMostCells)
-      t.fail(design_keys::kCells, "at most " + to_text(kMostCells, 3) + " cells");
+    if (1.0 * grid.nx * grid.ny > kMaxCells)
+      t.fail(design_keys::kCells, "a design has at most " + to_text(kMaxCells, 3) + " cells");
     if (const double ratio = grid.dx() / grid.dy(); ratio < 0.5 || ratio > 2)
-      t.fail(design_keys::kCells, "cells are nearly square; these are " + to_text(grid.dx(), 3) +
-                                      " x " + to_text(grid.dy(), 3) + " m");
+      t.fail(design_keys::kCells, "cells have an aspect ratio between 0.5 and 2; these cells are " +
+                                      to_text(grid.dx(), 3) + " x " + to_text(grid.dy(), 3) + " m");
     return grid;
   }
   const double cell = t.number(kCell);
   const double nx = length / cell, ny = body.width / cell;
-  if (nx * ny > kMostCells) {
-    const double smallest = 1.005 * std::sqrt(length * body.width / kMostCells);
-    t.fail(kCell, to_text(nx * ny, 3) + " cells; at most " + to_text(kMostCells, 3) +
-                      ", so a cell of at least " + to_text(smallest, 3) + " [m]");
+  if (nx * ny > kMaxCells) {
+    const double smallest = 1.005 * std::sqrt(length * body.width / kMaxCells);
+    t.fail(kCell, to_text(nx * ny, 3) + " cells; a design has at most " + to_text(kMaxCells, 3) +
+                      ", which needs a cell of at least " + to_text(smallest, 3) + " [m]");
   }
   if (!is_whole(nx) || !is_whole(ny) || nx < 0.5 || ny < 0.5)
     t.fail(kCell, "a cell divides the longest length " + to_text(length) + " and the width " +
                       to_text(body.width) + " of '" + body.name + "' [m]");
   if (body.flow && !body.flow->motion && !is_whole(body.flow->speed * end / cell))
     t.fail(kCell, "a cell divides the " + to_text(std::abs(body.flow->speed) * end) +
-                      " m by which '" + body.name + "' grows, so that its root is a mesh line");
+                      " m by which '" + body.name +
+                      "' changes its length, so that its root lies on a mesh line");
   grid.nx = static_cast<int>(std::lround(nx));
   grid.ny = static_cast<int>(std::lround(ny));
   return grid;
@@ -196,7 +201,7 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
   };
   for (const PointMass& mass : scene.point_masses)
     if (mass.body == design.body && !mass.at_end && !is_node(mass.point))
-      t.fail(kBody, "a point mass on a designed body sits at a node of its design mesh");
+      t.fail(kBody, "a point mass on a designed body is at a node of its design mesh");
   for (const BodyLoad& load : scene.loads) {
     if (load.body != design.body) continue;
     if (load.row->at_point && !is_node(load.point))
@@ -209,10 +214,10 @@ void check_loads(const Table& t, const Scene& scene, const BodyDesign& design) {
 }
 
 /// Reads the smallest widths of material and gaps of the union of components.
-Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
+MinimumWidths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
   const double thick = std::min(2 * design.min_thickness, 0.5 * body.width);
   const bool paper = design.tdf.kind == TdfSettings::Kind::paper;
-  Widths out;
+  MinimumWidths out;
   if (t.is_string(kMinFeature)) {
     t.choice(kMinFeature);
     out.solid = thick;
@@ -225,7 +230,7 @@ Widths read_widths(const Table& t, const Body& body, const BodyDesign& design) {
                      out.solid > 0 ? std::max(0.5 * out.solid, seen) : 0.0);
   if (paper && out.any())
     t.fail(out.solid > 0 ? kMinFeature : kMinGap,
-           "`tdf = \"paper\"` is no distance, and has no widths: 0");
+           "tdf = \"paper\" supports no minimum widths: only 0 is allowed");
   return out;
 }
 
@@ -233,8 +238,8 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   const double cell = design.grid.dx();
   const std::vector<int> boxes = t.integers(kComponents);
   design.components = {boxes[0], boxes[1]};
-  if (1.0 * boxes[0] * boxes[1] > kMostBoxes)
-    t.fail(kComponents, "at most " + to_text(kMostBoxes) + " boxes");
+  if (1.0 * boxes[0] * boxes[1] > kMaxBoxes)
+    t.fail(kComponents, "a layout has at most " + to_text(kMaxBoxes) + " boxes");
   design.min_thickness =
       t.number(kMinThickness.within(0, 0.5 * body.width), std::min(cell, 0.5 * body.width));
 
@@ -246,7 +251,7 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   design.fillet_radius = t.number(kFilletRadius.within(0, 0.5 * body.width),
                                   std::min(kRadius * design.widths.solid, 0.5 * body.width));
   if (design.fillet_radius > 0 && design.widths.solid == 0)
-    t.fail(kFilletRadius, "fillets need a smallest width of material: `min_feature`");
+    t.fail(kFilletRadius, "fillets need a minimum width of material: set `min_feature`");
 
   const double wide = design.grid.width / boxes[0], high = design.grid.height / boxes[1];
   const double diagonal = std::hypot(wide, high);
@@ -279,7 +284,7 @@ void read_components(const Table& t, const Body& body, BodyDesign& design) {
   design.symmetry = t.choice(kSymmetry);
   design.symmetry.despite_loads = t.boolean(kDespiteLoads);
   if (design.symmetry.despite_loads && !design.symmetry.x && !design.symmetry.y)
-    t.fail(kDespiteLoads, "it enforces `symmetry = \"x\"`, \"y\" or \"both\"");
+    t.fail(kDespiteLoads, "this key needs symmetry = \"x\", \"y\" or \"both\"");
 }
 
 void read_tdf(const Table& t, BodyDesign& design) {
@@ -287,7 +292,7 @@ void read_tdf(const Table& t, BodyDesign& design) {
   const bool paper = design.tdf.kind == TdfSettings::Kind::paper;
   design.band = t.numbers(paper ? kBand.measured_in("") : kBand);
   for (size_t i = 1; i < design.band.size(); ++i)
-    if (design.band[i] >= design.band[i - 1]) t.fail(kBand, "bands go from coarse to fine");
+    if (design.band[i] >= design.band[i - 1]) t.fail(kBand, "half-widths go from coarse to fine");
   design.tdf.sharpness = t.number(kSharpness) / cell;
   // If any width is allowed, the erosion refers to the smallest component.
   const double width = design.widths.solid > 0 ? design.widths.solid : 2 * design.min_thickness;
@@ -318,7 +323,7 @@ BodyDesign read_static_design(const Table& t, const Scene& scene) {
   design.grid.x0 = domain.bounds.lower.x();
   design.grid.y0 = domain.bounds.lower.y();
   design.goal = read_goal(t, plate_of(scene, design));
-  if (mmc::has_motion(design.goal)) t.fail("a plate at rest has no motion to minimize or to limit");
+  if (mmc::has_motion(design.goal)) t.fail("a static plate has no responses of a motion");
   read_coupling(t, design);
   read_components(t, body, design);
   read_tdf(t, design);
@@ -334,7 +339,7 @@ void read_goals(const Table& t, const Scene& scene, BodyDesign& design) {
   design.goal = mmc::goal_of_loads(goal);
   if (!mmc::is_held_back(design.goal))
     t.fail(
-        "limits of the motion come after a design for loads, which needs one of its own: a "
+        "limits of the motion follow a design for static loads, which needs a limit as well: a "
         "largest compliance");
 }
 
@@ -356,27 +361,27 @@ BodyDesign read_design(const Table& t, const Scene& scene) {
   if (scene.domain) return read_static_design(t, scene);
   BodyDesign design;
   design.body = read_flexible(t, kBody, scene);
-  if (!scene.body(design.body).row->designable) t.fail(kBody, "plates are designed, beams are not");
+  if (!scene.body(design.body).row->designable) t.fail(kBody, "beams cannot be designed");
   if (const auto& heat = scene.body(design.body).heat; heat && heat->force)
-    t.fail(kBody, "the thermal force is that of full material: body.heat.force = false");
-  if (const auto& flow = scene.body(design.body).flow; flow && flow->stored != Stored::none)
-    t.fail(kBody,
-           "what a rigid body stores is full material: no design of a body that has "
-           "body.flow.stored");
+    t.fail(kBody, "the thermal force needs full material: set body.heat.force = false");
+  if (const auto& flow = scene.body(design.body).flow; flow && flow->reservoir != Reservoir::none)
+    t.fail(kBody, "the reservoir needs full material: no [[design]] with body.flow.reservoir");
   for (const BodyDesign& other : scene.designs)
     if (other.body == design.body) t.fail(kBody, "this body has a [[design]] already");
   const Body& body = scene.body(design.body);
   const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(),
                                   [&](const Joint& j) { return j.carries(body.name); });
-  if (body.in_space() || body.has_free_lines())
-    t.fail(kBody, "a designed body lives in the plane and has no free lines");
+  if (body.in_space() || body.has_eulerian_lines())
+    t.fail(kBody,
+           "a designed body must be planar and must not have lines whose material coordinate is an "
+           "unknown");
   if (!welded)
     design.link = read_link(t, kBody, body, scene);
   else if (t.has(design_keys::kLinkSupport))
     t.fail(design_keys::kLinkSupport,
-           "'" + body.name + "' is welded at its root, which holds it: esl.support says how");
+           "'" + body.name + "' is welded at its root; esl.support defines its support");
   if (!body.has_term([](const fem::TermRow& row) { return row.designable; }))
-    t.fail(kBody, "a designed body has the term \"membrane\"");
+    t.fail(kBody, "a designed body needs the term \"membrane\"");
 
   design.grid = read_grid(t, body, scene.time.end);
   read_goals(t, scene, design);

@@ -14,9 +14,9 @@ namespace flexmorph::cases {
 const io::Key& design_keys::kMaxVolume =
     io::key("design", "max_volume")
         .number({.noun = "a volume fraction", .lower = 0, .upper = 1, .lower_open = true})
-        .otherwise_as("a [[design.constraint]] is given")
-        .when("compliance is minimized")
-        .says("Part of the domain that may be material, solid regions included.");
+        .otherwise_as("required unless a [[design.constraint]] is given")
+        .when("the compliance or a response of the motion is minimized")
+        .description("Largest volume fraction of the material, solid regions included.");
 
 namespace {
 
@@ -52,54 +52,67 @@ std::vector<std::string> ways_of_loads() { return all_of(&ResponseRow::loads); }
 const Key& kMinimize = io::key("design", "minimize")
                            .word("an objective", row_names)
                            .otherwise("compliance")
-                           .says("What the design shall have little of.");
+                           .description("Response that the design minimizes.");
 const Key& kLoads = io::key("design", "loads")
-                        .word("a way to put loads together", ways_of_loads)
+                        .word("a combination of loads", ways_of_loads)
                         .otherwise("sum")
-                        .says("All loads count by their weights, or the largest compliance alone.");
+                        .description(
+                            "Combination of loads: weighted sum of compliances (`sum`) or largest "
+                            "compliance (`worst`).");
 const Key& kMaxCompliance = io::key("design", "max_compliance")
                                 .number(io::positive("a compliance", "J"))
-                                .otherwise_as("a [[design.constraint]] is given")
-                                .when("something else than compliance is minimized")
-                                .says("What the compliance may be.");
-const Key& kObjective = io::key("design", "objective")
-                            .tables_of()
-                            .otherwise_as("none")
-                            .when("`minimize` is a number of the motion")
-                            .says("One more of them, added to it by a weight.");
-const Key& kAdded =
-    io::key("design.objective", "response").word("a response", row_names).says("What is added.");
-const Key& kWeight = io::key("design.objective", "weight")
-                         .number(io::positive("a weight"))
-                         .otherwise(1.0)
-                         .says("Per unit of the response; that of `minimize` is 1.");
-const Key& kConstraint = io::key("design", "constraint")
-                             .tables_of()
-                             .otherwise_as("none")
-                             .says("One more limit, or one in place of the largest volume.");
-const Key& kResponse =
-    io::key("design.constraint", "response").word("a response", row_names).says("What is limited.");
+                                .otherwise_as("required unless a [[design.constraint]] is given")
+                                .when("a response that grows with the material is minimized")
+                                .description("Largest compliance.");
+const Key& kObjective =
+    io::key("design", "objective")
+        .tables_of()
+        .otherwise_as("none")
+        .when("`minimize` is a response of the motion")
+        .description(
+            "A further response of the motion that is added to the objective with a weight.");
+const Key& kAdded = io::key("design.objective", "response")
+                        .word("a response", row_names)
+                        .description("Response of the motion that is added to the objective.");
+const Key& kWeight =
+    io::key("design.objective", "weight")
+        .number(io::positive("a weight"))
+        .otherwise(1.0)
+        .description(
+            "Weight per unit of the added response; the response of `minimize` has the weight 1.");
+const Key& kConstraint =
+    io::key("design", "constraint")
+        .tables_of()
+        .otherwise_as("none")
+        .description("A further limit, or a limit in place of `max_volume` or `max_compliance`.");
+const Key& kResponse = io::key("design.constraint", "response")
+                           .word("a response", row_names)
+                           .description("Response that is limited.");
 const Key& kItsLoads = io::key("design.constraint", "loads")
-                           .word("a way to put loads together", ways_of_loads)
-                           .otherwise_as("as `design.loads` says")
+                           .word("a combination of loads", ways_of_loads)
+                           .otherwise_as("the value of `design.loads`")
                            .when("`response = \"compliance\"`")
-                           .says("How loads count for this limit.");
-const Key& kAtMost = io::key("design.constraint", "at_most")
-                         .number(io::positive("a response"))
-                         .otherwise_as("no upper limit")
-                         .says("In the unit of the response, at most what a full plate has.");
-const Key& kAtLeast = io::key("design.constraint", "at_least")
-                          .number(io::positive("a response"))
-                          .otherwise_as("no lower limit")
-                          .when("the response has no loads")
-                          .says("Likewise.");
+                           .description("Combination of loads in the limited compliance.");
+const Key& kAtMost =
+    io::key("design.constraint", "at_most")
+        .number(io::positive("a response"))
+        .otherwise_as("no upper limit")
+        .description(
+            "Upper limit of the response, in its unit; at most the value of the full plate.");
+const Key& kAtLeast =
+    io::key("design.constraint", "at_least")
+        .number(io::positive("a response"))
+        .otherwise_as("no lower limit")
+        .when("the response does not depend on loads")
+        .description(
+            "Lower limit of the response, in its unit; at most the value of the full plate.");
 
 const ResponseRow& read_row(const Table& t, const Key& key, const std::string& loads,
                             const mmc::Plate& plate) {
   const std::string name = t.choice(key);
   const ResponseRow& row = *mmc::find_response(name, loads);
   if (row.full && !(row.full(plate) > 0))
-    t.fail(key, "a plate without a density has none: domain.density [kg/m^3]");
+    t.fail(key, "this response needs a density of the plate: set domain.density [kg/m^3]");
   return row;
 }
 
@@ -124,14 +137,14 @@ std::string noun_of(const ResponseRow& row) { return std::string("a ").append(ro
 void read_addend(const Table& t, const std::string& loads, const mmc::Plate& plate,
                  mmc::Goal& goal) {
   if (!goal.objective->of_motion)
-    t.fail("only numbers of the motion have sums: `minimize` is the " +
+    t.fail("only responses of the motion can be added, but `minimize` is the " +
            std::string(goal.objective->words));
-  if (!t.has(kAdded)) t.fail(kAdded, "what is added is a `response`");
+  if (!t.has(kAdded)) t.fail(kAdded, "an added objective needs a `response`");
   const ResponseRow& row = read_row(t, kAdded, loads, plate);
-  if (!row.of_motion) t.fail(kAdded, "a number of the motion");
+  if (!row.of_motion) t.fail(kAdded, "an added objective is a response of the motion");
   const auto is_row = [&](const mmc::Addend& a) { return a.row == &row; };
   if (&row == goal.objective || std::any_of(goal.addends.begin(), goal.addends.end(), is_row))
-    t.fail(kAdded, "each number once");
+    t.fail(kAdded, "this response is part of the objective already");
   goal.addends.push_back({&row, t.number(kWeight)});
 }
 
@@ -139,23 +152,24 @@ void read_addend(const Table& t, const std::string& loads, const mmc::Plate& pla
 void read_constraint(const Table& t, const std::string& design_loads, const mmc::Plate& plate,
                      mmc::Goal& goal) {
   const std::string loads = t.has(kItsLoads) ? t.choice(kItsLoads) : design_loads;
-  if (!t.has(kResponse)) t.fail(kResponse, "a constraint is one on a `response`");
+  if (!t.has(kResponse)) t.fail(kResponse, "a constraint needs a `response`");
   const ResponseRow& row = read_row(t, kResponse, loads, plate);
   if (t.has(kItsLoads) && !row.needs_state())
-    t.fail(kItsLoads, "only " + names_of_rows(true) + " puts loads together");
+    t.fail(kItsLoads, "only " + names_of_rows(true) + " combines loads");
   const auto is_row = [&](const mmc::Addend& a) { return a.row == &row; };
   if (&row == goal.objective || std::any_of(goal.addends.begin(), goal.addends.end(), is_row))
-    t.fail(kResponse, "what is minimized has no limit");
+    t.fail(kResponse, "a minimized response has no limit");
   if (const auto rows = mmc::rows_of(goal); std::find(rows.begin(), rows.end(), &row) != rows.end())
     t.fail(kResponse, "the " + std::string(row.words) + " has a limit already");
-  if (!t.has(kAtMost) && !t.has(kAtLeast)) t.fail("a constraint has `at_most`, `at_least` or both");
+  if (!t.has(kAtMost) && !t.has(kAtLeast))
+    t.fail("a constraint needs `at_most`, `at_least` or both");
   if (t.has(kAtLeast) && row.falls_with_material())
     t.fail(kAtLeast, "only " + names_of_rows(false) + " has a lower limit");
   for (const Key* key : {&kAtMost, &kAtLeast})
     if (t.has(*key)) read_limit(t, key->called(noun_of(row)), row, plate, goal);
   if (t.has(kAtMost) && t.has(kAtLeast) &&
       goal.limits.back().value > goal.limits[goal.limits.size() - 2].value)
-    t.fail(kAtLeast, "no more than `at_most`");
+    t.fail(kAtLeast, "a lower limit is at most `at_most`");
 }
 
 /// Reads max_volume or max_compliance; one of them is required unless there are constraints.
@@ -169,7 +183,7 @@ void read_shorthand(const Table& t, const std::string& loads, const mmc::Plate& 
   if (!stiffest && (wanted || t.has(kMaxCompliance)))
     read_limit(t, kMaxCompliance, *mmc::find_response("compliance", loads), plate, goal);
   if (t.has(refused))
-    t.fail(refused, "only minimize = " + names_of_rows(!stiffest) + " has a largest " +
+    t.fail(refused, "only minimize = " + names_of_rows(!stiffest) + " allows a largest " +
                         (stiffest ? "compliance" : "volume"));
 }
 
@@ -200,10 +214,11 @@ mmc::Goal read_goal(const Table& t, const mmc::Plate& plate) {
     read_constraint(constraint, loads, plate, goal);
   if (!mmc::is_held_back(goal))
     t.fail(goal.objective->needs_state()
-               ? "a full plate is the stiffest: a [[design.constraint]] with `at_most` of " +
-                     names_of_rows(false) + " says what it may have"
-               : "nothing at all has the least " + std::string(goal.objective->words) +
-                     ": a [[design.constraint]] says what is wanted, `at_most` of " +
+               ? "the full plate is the stiffest design: the case needs a [[design.constraint]] "
+                 "with `at_most` of " +
+                     names_of_rows(false)
+               : "the empty plate has the least " + std::string(goal.objective->words) +
+                     ": the case needs a [[design.constraint]] with `at_most` of " +
                      names_of_rows(true) + " or `at_least` of " + names_of_rows(false));
   return goal;
 }
@@ -211,10 +226,12 @@ mmc::Goal read_goal(const Table& t, const mmc::Plate& plate) {
 void check_sharing(const Table& t, const mmc::Goal& goal) {
   if (!goal.objective->needs_state())
     t.fail(design_keys::kCoupling,
-           "only with minimize = \"compliance\": what is shared is what max_volume allows");
+           "\"shared_mass\" needs minimize = \"compliance\", because designs share the material "
+           "that max_volume allows");
   if (goal.objective->per_load)
-    t.fail(design_keys::kCoupling,
-           "only with loads = \"sum\": compliances of all bodies are added");
+    t.fail(
+        design_keys::kCoupling,
+        "\"shared_mass\" needs loads = \"sum\", because the compliances of all bodies are added");
   try {
     mmc::shared_limit(goal);
   } catch (const Error& error) {
@@ -222,7 +239,7 @@ void check_sharing(const Table& t, const mmc::Goal& goal) {
   }
 }
 
-std::string limit_words(const mmc::Goal& goal) {
+std::string limit_text(const mmc::Goal& goal) {
   std::string out;
   for (const mmc::Limit& limit : goal.limits)
     out += (out.empty() ? "" : ", ") + std::string(limit.row->words) +
@@ -230,14 +247,14 @@ std::string limit_words(const mmc::Goal& goal) {
   return out;
 }
 
-std::string goal_words(const mmc::Goal& goal) {
+std::string goal_text(const mmc::Goal& goal) {
   std::string under, with;
   for (const mmc::Limit& limit : goal.limits) {
     std::string& out = limit.at_least ? with : under;
     out += (out.empty() ? (limit.at_least ? " with " : " under ") : " and ") + noun_of(*limit.row) +
            (limit.at_least ? " of at least " : " of ") + with_unit(limit);
   }
-  return mmc::objective_words(goal) + under + with;
+  return mmc::objective_text(goal) + under + with;
 }
 
 std::vector<const ResponseRow*> further_rows(const Scene& scene) {

@@ -24,9 +24,9 @@ mmc::Goal read_goal(const io::Table& t, const mmc::Plate& plate);
 void check_sharing(const io::Table& t, const mmc::Goal& goal);
 
 /// Returns the limits of a goal as text: "volume at most 0.5, mass at least 2 kg".
-std::string limit_words(const mmc::Goal& goal);
+std::string limit_text(const mmc::Goal& goal);
 /// Returns a goal as text: "summed compliance under a volume of 0.4".
-std::string goal_words(const mmc::Goal& goal);
+std::string goal_text(const mmc::Goal& goal);
 
 /// Returns the responses of all designs for which the tables need additional columns, each once.
 std::vector<const mmc::ResponseRow*> further_rows(const Scene& scene);

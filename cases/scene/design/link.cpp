@@ -13,24 +13,26 @@ namespace {
 using io::Table;
 using mmc::Support;
 
-const io::Choice<Support> kSupport(
-    io::key("design", "support")
-        .otherwise("pins")
-        .when("joints hold the body at two points")
-        .says("What balances the loads of a link: reactions at its pins, or its own inertia."),
-    "a support of a link", {{"pins", Support::pins}, {"floating", Support::floating}});
+const io::Choice<Support> kSupport(io::key("design", "support")
+                                       .otherwise("pins")
+                                       .when("joints hold the body at two points")
+                                       .description("Balance of the loads of a link: reactions at "
+                                                    "its pins, or its own inertia (`floating`)."),
+                                   "a support of a link",
+                                   {{"pins", Support::pins}, {"floating", Support::floating}});
 
 const io::Key& kEyes =
     io::key("design", "eye_radius")
         .numbers(io::positive("the radius of an eye", "m"), 2, 2)
         .otherwise_as("no eyes")
         .when("joints hold the body at two points")
-        .says("Material around the pins: of the first and of the second joint's.");
-const io::Key& kBores = io::key("design", "bore_radius")
-                            .numbers(io::positive("the radius of a bore", "m"), 2, 2)
-                            .otherwise_as("no bores")
-                            .when("joints hold the body at two points")
-                            .says("Bores in the eyes, which pins fill in motions and loads.");
+        .description("Radii of the solid eyes around the pins of the first and the second joint.");
+const io::Key& kBores =
+    io::key("design", "bore_radius")
+        .numbers(io::positive("the radius of a bore", "m"), 2, 2)
+        .otherwise_as("no bores")
+        .when("joints hold the body at two points")
+        .description("Radii of the bores in the eyes; pins fill the bores in motions and loads.");
 
 /// Radius around a pin within which cells must be solid, by their centres [cells].
 constexpr double kSolidReach = 1.5;
@@ -59,10 +61,11 @@ Link read_link(const Table& t, const io::Key& key, const Body& body, const Scene
     if (std::none_of(points.begin(), points.end(), is_here)) points.push_back(*point);
   }
   if (points.size() != 2)
-    t.fail(key, needs + (points.empty() ? ""
-                                        : "; '" + body.name + "' is held at " +
-                                              std::to_string(points.size())));
-  if (body.heat) t.fail(key, "a designed link between two pins stays cold: no [body.heat]");
+    t.fail(key,
+           needs + (points.empty() ? ""
+                                   : "; '" + body.name + "' is held at this number of points: " +
+                                         std::to_string(points.size())));
+  if (body.heat) t.fail(key, "a designed link between two pins has no [body.heat]");
   return {.pins = {points[0], points[1]}, .support = t.choice(kSupport)};
 }
 
@@ -73,9 +76,10 @@ void check_joint_points(const Table& t, const io::Key& key, const Scene& scene,
     if (const auto point = joint.point_on(design.body);
         point &&
         !(is_whole((point->x() - g.x0) / g.dx()) && is_whole((point->y() - g.y0) / g.dy())))
-      t.fail(key, "joint '" + joint.name +
-                      "' holds a designed body at a node of its design mesh, not at " +
-                      words(*point) + " [m]");
+      t.fail(key,
+             "joint '" + joint.name +
+                 "' must hold the designed body at a node of its design mesh; it holds it at " +
+                 words(*point) + " [m]");
 }
 
 void check_pins_solid(const Table& t, const BodyDesign& design) {
@@ -104,7 +108,8 @@ void read_eyes(const Table& t, BodyDesign& design) {
       if (t.has(*key)) t.fail(*key, "only a link, which joints hold at two points, has eyes");
     return;
   }
-  if (t.has(kBores) && !t.has(kEyes)) t.fail(kBores, "bores lie in eyes: `eye_radius` is missing");
+  if (t.has(kBores) && !t.has(kEyes))
+    t.fail(kBores, "a bore needs an eye: `eye_radius` is missing");
   if (!t.has(kEyes)) return;
   const Grid& g = design.grid;
   const std::vector<double> eyes = t.numbers(kEyes),
@@ -115,13 +120,14 @@ void read_eyes(const Table& t, BodyDesign& design) {
         {pin.x() - g.x0, g.x0 + g.width - pin.x(), pin.y() - g.y0, g.y0 + g.height - pin.y()});
     if (eyes[k] > largest * (1 + 1e-9))
       t.fail(kEyes, "the eye around the pin at " + words(pin) +
-                        " lies in the plate: a radius of at most " + io::to_text(largest) + " m");
+                        " must lie in the plate: its radius is at most " + io::to_text(largest) +
+                        " m");
     const double wall = std::max(design.widths.solid, std::min(g.dx(), g.dy()));
     if (bores[k] > 0 && eyes[k] - bores[k] < wall * (1 - 1e-9))
       t.fail(kBores, "the wall of an eye is at least " + io::to_text(wall) +
-                         " m thick (`min_feature`): a bore of at most " +
-                         io::to_text(eyes[k] - wall) + " m in an eye of " + io::to_text(eyes[k]) +
-                         " m");
+                         " m thick (`min_feature`): the radius of the bore is at most " +
+                         io::to_text(eyes[k] - wall) + " m in an eye with the radius " +
+                         io::to_text(eyes[k]) + " m");
     design.link->eyes[k] = eyes[k];
     design.link->bores[k] = bores[k];
     design.solid.push_back(circle_within(pin, eyes[k], mmc::kOutlineTolerance * g.dx()));

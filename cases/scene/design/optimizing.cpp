@@ -19,15 +19,18 @@ using io::to_text;
 using mmc::LoadDefinition;
 using mmc::Support;
 
-constexpr int kMostLoads = 10'000;
+constexpr int kMaxLoads = 10'000;
 
 const Key& kEvery = io::key("esl", "every")
                         .number(positive("the time between loads", "s"))
-                        .says("Time between loads; the root moves by whole cells meanwhile.");
+                        .description(
+                            "Time between equivalent static loads, in which a root moves by a "
+                            "whole number of cells.");
 const io::Choice<LoadDefinition> kDefinition(
     io::key("esl", "definition")
         .otherwise("inertia")
-        .says("Inertia follows the design, or stays (`frozen`); or forces from the stiffness."),
+        .description("Inertia forces that follow the design (`inertia`) or stay (`frozen`), or "
+                     "`stiffness` forces."),
     "a definition of the loads",
     {{"inertia", LoadDefinition::inertia},
      {"frozen", LoadDefinition::frozen},
@@ -35,132 +38,160 @@ const io::Choice<LoadDefinition> kDefinition(
 const io::Choice<Support> kSupport(
     io::key("esl", "support")
         .otherwise("moving_root")
-        .says("Where plates with a root are held; links: `design.support`."),
+        .description(
+            "Support of plates with a root under the static loads; links use `design.support`."),
     "a support", {{"moving_root", Support::moving_root}, {"far_end", Support::far_end}});
-const Key& kCompress = io::key("esl", "compress")
-                           .boolean()
-                           .otherwise(true)
-                           .says("Solves for a basis of the loads where that is cheaper.");
+const Key& kCompress =
+    io::key("esl", "compress")
+        .boolean()
+        .otherwise(true)
+        .description("True if a smaller basis of the loads is solved where this reduces the work.");
 
 const optim::Settings kSettings;
 
 const Key& kName = io::key("optimizer", "name")
                        .word("an optimizer", optim::optimizer_names)
                        .otherwise(kSettings.name)
-                       .says("Who solves the design problem.");
-const Key& kMaxIterations = io::key("optimizer", "max_iterations")
-                                .integer("a number of iterations", 0, 1'000'000)
-                                .otherwise(kSettings.max_iterations)
-                                .says("Iterations of all stages together; 0 evaluates the start.");
+                       .description("Optimizer that solves the design problem.");
+const Key& kMaxIterations =
+    io::key("optimizer", "max_iterations")
+        .integer("a number of iterations", 0, 1'000'000)
+        .otherwise(kSettings.max_iterations)
+        .description(
+            "Largest number of iterations of all stages together; 0 evaluates the initial design.");
 const Key& kMaxSolves = io::key("optimizer", "max_solves")
                             .integer("a number of state solves", 0, 100'000'000)
                             .otherwise(kSettings.max_evaluations)
-                            .says("State solves allowed; 0: no limit.");
+                            .description("Largest number of state solves; 0 means no limit.");
 const Key& kMoveLimit =
     io::key("optimizer", "move_limit")
         .number({.noun = "a move limit", .lower = 0, .upper = 1, .lower_open = true})
         .otherwise(kSettings.move_limit)
-        .says("Largest change of a variable per iteration, in parts of its range.");
-const Key& kKktTolerance = io::key("optimizer", "kkt_tolerance")
-                               .number(not_negative("a tolerance"))
-                               .otherwise(kSettings.kkt_tolerance)
-                               .says("It stops when the KKT residual is below this ...");
-const Key& kFeasibility = io::key("optimizer", "feasibility")
-                              .number(positive("a tolerance"))
-                              .otherwise(kSettings.feasibility)
-                              .says("... and the violation of constraints below this.");
-const Key& kChangeTolerance = io::key("optimizer", "change_tolerance")
-                                  .number(not_negative("a tolerance"))
-                                  .otherwise(kSettings.change_tolerance)
-                                  .says("Or after 3 iterations with less change; 0: never.");
-const Key& kRestIterations = io::key("optimizer", "rest_iterations")
-                                 .integer("a number of iterations", 0, 1'000'000)
-                                 .otherwise(kSettings.rest.rows)
-                                 .says("Or when over so many iterations (0: never) ...");
-const Key& kRestObjective =
-    io::key("optimizer", "rest_objective")
-        .number(not_negative("a part"))
-        .otherwise(kSettings.rest.objective)
-        .says(
-            "... the objective changed by less than this part (a volume: of the full plate), ...");
-const Key& kRestKkt = io::key("optimizer", "rest_kkt")
-                          .number(not_negative("a tolerance"))
-                          .otherwise(kSettings.rest.kkt)
-                          .says("... and the KKT residual is below this.");
+        .description("Largest change of a variable per iteration, as a fraction of its range.");
+const Key& kKktTolerance =
+    io::key("optimizer", "kkt_tolerance")
+        .number(not_negative("a tolerance"))
+        .otherwise(kSettings.kkt_tolerance)
+        .description("KKT residual at which the optimizer stops, if the design is also feasible.");
+const Key& kFeasibility =
+    io::key("optimizer", "feasibility")
+        .number(positive("a tolerance"))
+        .otherwise(kSettings.feasibility)
+        .description("Largest violation of constraints of a feasible design.");
+const Key& kChangeTolerance =
+    io::key("optimizer", "change_tolerance")
+        .number(not_negative("a tolerance"))
+        .otherwise(kSettings.change_tolerance)
+        .description(
+            "Change of the design below which the optimizer stops after 3 iterations; 0: never.");
+const Key& kStagnationIterations =
+    io::key("optimizer", "stagnation_iterations")
+        .formerly("rest_iterations")
+        .integer("a number of iterations", 0, 1'000'000)
+        .otherwise(kSettings.rest.rows)
+        .description(
+            "Number of iterations over which the stagnation of the objective is tested; 0: never.");
+const Key& kStagnationObjective = io::key("optimizer", "stagnation_objective")
+                                      .formerly("rest_objective")
+                                      .number(not_negative("a fraction"))
+                                      .otherwise(kSettings.rest.objective)
+                                      .description(
+                                          "Relative change of the objective below which it "
+                                          "stagnates (volume: relative to the full plate).");
+const Key& kStagnationKkt =
+    io::key("optimizer", "stagnation_kkt")
+        .formerly("rest_kkt")
+        .number(not_negative("a tolerance"))
+        .otherwise(kSettings.rest.kkt)
+        .description(
+            "Largest KKT residual at which an optimization with a stagnating objective stops.");
 const Key& kOptions = io::key("optimizer", "options")
                           .table()
                           .otherwise_as("none")
-                          .says("Settings of this one optimizer.");
-const Key& kOption = io::key("optimizer.options", "*")
-                         .number(io::any_number("an option"))
-                         .says("Its names and ranges are in the file of the optimizer.");
+                          .description("Options of the chosen optimizer.");
+const Key& kOption =
+    io::key("optimizer.options", "*")
+        .number(io::any_number("an option"))
+        .description(
+            "Option NAME of the chosen optimizer; its source file lists names and ranges.");
 
-const Key& kMaxCycles = io::key("cycle", "max_cycles")
-                            .integer("a number of cycles", 1, 1000)
-                            .otherwise(Cycle().max_cycles)
-                            .says("Motions with the designs of the one before, at most.");
+const Key& kMaxCycles =
+    io::key("cycle", "max_cycles")
+        .integer("a number of cycles", 1, 1000)
+        .otherwise(Cycle().max_cycles)
+        .description(
+            "Largest number of cycles; each one simulates the designs of the previous cycle.");
 const Key& kTolerance = io::key("cycle", "tolerance")
                             .number(not_negative("a tolerance"))
                             .otherwise(Cycle().tolerance)
-                            .says("Cycles end when one improves `compare_by` by a smaller part.");
-const Key& kLoadDifference =
-    io::key("cycle", "load_difference")
-        .number(not_negative("a part of the strain energy"))
-        .otherwise(Cycle().load_difference)
-        .says("Cycles end when loads differ by a smaller part from those of their own motion.");
+                            .description(
+                                "Cycles have converged if a cycle improves the measure "
+                                "`compare_by` by a smaller fraction.");
+const Key& kLoadDifference = io::key("cycle", "load_difference")
+                                 .number(not_negative("a fraction of the strain energy"))
+                                 .otherwise(Cycle().load_difference)
+                                 .description(
+                                     "Loads have converged if they differ by a smaller fraction "
+                                     "from the loads of the new motion.");
 const io::Choice<CycleMeasure> kCompareBy(
     io::key("cycle", "compare_by")
         .otherwise("strain_energy")
-        .says("What cycles are compared by: strain energy over time, or how a point deflects."),
+        .description(
+            "Measure that compares cycles: strain energy over time, or the deflection of a point."),
     "a measure of the motion",
     {{"strain_energy", CycleMeasure::strain_energy},
      {"rms", CycleMeasure::rms},
      {"peak_to_peak", CycleMeasure::peak_to_peak},
      {"mean", CycleMeasure::mean}});
-const Key& kComparePoint = io::key("cycle", "compare_point")
-                               .name_of("a tip or an observed point")
-                               .otherwise_as("the only one of the designs")
-                               .says("What `compare_by` means: BODY for its tip, or BODY.NAME.");
+const Key& kComparePoint =
+    io::key("cycle", "compare_point")
+        .name_of("a tip or an observed point")
+        .otherwise_as("the only tip or observed point of the designs")
+        .description(
+            "Point of `compare_by`: BODY for the tip of a body, BODY.NAME for an observed point.");
 
-const Key& kRefine = io::key("verify", "refine")
-                         .integer("a number of parts of an element", 2, 100)
-                         .otherwise_as("`mesh` is given")
-                         .says("So many times the elements in each direction.");
-const Key& kCells =
-    io::key("verify", "cells")
-        .integer("a number of parts of a cell", 1, 8)
-        .otherwise_as("`mesh` or `refine` is given")
-        .says(
-            "Designed bodies move on their designs' cells, in so many parts; that judges cycles, "
-            "too.");
-const Key& kMesh = io::key("verify", "mesh")
-                       .integers("a number of elements", 1, 10'000, 2, 2)
-                       .otherwise_as("`refine` is given")
-                       .says("Or so many elements along the length at the start, and across.");
+const Key& kRefine =
+    io::key("verify", "refine")
+        .integer("a factor of refinement", 2, 100)
+        .otherwise_as("required unless `mesh` or `cells` is given")
+        .description("Factor by which the number of elements in each direction is multiplied.");
+const Key& kCells = io::key("verify", "cells")
+                        .integer("a number of elements per cell", 1, 8)
+                        .otherwise_as("required unless `mesh` or `refine` is given")
+                        .description(
+                            "Number of elements per design cell in each direction; cycles are then "
+                            "verified as well.");
+const Key& kMesh =
+    io::key("verify", "mesh")
+        .integers("a number of elements", 1, 10'000, 2, 2)
+        .otherwise_as("required unless `refine` or `cells` is given")
+        .description(
+            "Number of elements of the verification along the length at the start, and across.");
 const Key& kStep = io::key("verify", "step")
                        .number(positive("a time step", "s"))
                        .otherwise_as("`time.step`")
-                       .says("The time step on the finer mesh.");
+                       .description("Time step of the verification.");
 
 Esl read_esl(const Table& t, const Scene& scene) {
   Esl esl;
   const double end = scene.time.end;
   esl.every = t.number(kEvery);
-  if (esl.every > end * (1 + 1e-9)) t.fail(kEvery, "the first load is no later than time.end [s]");
-  if (end / esl.every > kMostLoads + 0.5)
-    t.fail(kEvery, "at most " + to_text(kMostLoads) + " loads");
+  if (esl.every > end * (1 + 1e-9)) t.fail(kEvery, "a time between loads is at most time.end [s]");
+  if (end / esl.every > kMaxLoads + 0.5)
+    t.fail(kEvery, "a motion has at most " + to_text(kMaxLoads) + " loads");
   mmc::ComplianceSettings& s = esl.settings;
   s.loads = t.choice(kDefinition);
   s.support = t.choice(kSupport);
   if (s.loads == LoadDefinition::inertia && s.support == Support::far_end)
     t.fail(kSupport,
-           "\"inertia\" loads need \"moving_root\": at the far end the reactions of the root would "
-           "have to follow the design");
+           "\"inertia\" loads need \"moving_root\"; with \"far_end\" the reactions of the root "
+           "would depend on the design");
   s.compress = t.boolean(kCompress);
   for (const BodyDesign& design : scene.designs)
     if (design.link && s.loads == LoadDefinition::stiffness)
       t.fail(kDefinition,
-             "'" + design.body + "' is a link between two pins: \"inertia\" or \"frozen\" loads");
+             "'" + design.body +
+                 "' is a link between two pins, which needs \"inertia\" or \"frozen\" loads");
 
   // At constant speed the root must be on a mesh line at every load. A root that a drive moves is
   // taken to be on the nearest mesh line.
@@ -169,9 +200,10 @@ Esl read_esl(const Table& t, const Scene& scene) {
     if (!body.flow || body.flow->speed == 0) continue;
     const double cells = std::abs(body.flow->speed) * esl.every / design.grid.dx();
     if (!is_whole(cells) || cells < 0.5)
-      t.fail(kEvery, "the root of '" + body.name + "' moves by " + to_text(cells, 4) +
-                         " cells between loads; a whole number is needed, so a multiple of " +
-                         to_text(design.grid.dx() / std::abs(body.flow->speed), 6) + " [s]");
+      t.fail(kEvery,
+             "the root of '" + body.name + "' moves by " + to_text(cells, 4) +
+                 " cells between loads, which must be a whole number: `every` is a multiple of " +
+                 to_text(design.grid.dx() / std::abs(body.flow->speed), 6) + " [s]");
   }
   return esl;
 }
@@ -204,9 +236,9 @@ optim::Settings read_optimizer(const Table& t) {
   s.kkt_tolerance = t.number(kKktTolerance);
   s.feasibility = t.number(kFeasibility);
   s.change_tolerance = t.number(kChangeTolerance);
-  s.rest = {.rows = t.integer(kRestIterations),
-            .objective = t.number(kRestObjective),
-            .kkt = t.number(kRestKkt)};
+  s.rest = {.rows = t.integer(kStagnationIterations),
+            .objective = t.number(kStagnationObjective),
+            .kkt = t.number(kStagnationKkt)};
   // Without limits the first steps of Ipopt are far longer than a component; a moving box limits
   // them. Far from a minimum exact Hessians are indefinite and less useful than quasi-Newton
   // matrices, which do not resolve the ripples due to the grid: the smoothed compliances of the
@@ -219,19 +251,22 @@ optim::Settings read_optimizer(const Table& t) {
   return s;
 }
 
-constexpr const char* kNoHeat = "heat does not know cells";
+constexpr const char* kNoHeat = "heated bodies cannot move on cells";
 constexpr const char* kNoDiscreteGradient =
-    "void on cells has no discrete gradient for \"energy_momentum\"";
+    "\"energy_momentum\" cannot be used on cells, because void cells have no discrete gradient";
 
 /// Throws if a body cannot move on cells.
 void check_on_cells(const Table& t, const Scene& scene, const Body& body) {
   const std::string name = "'" + body.name + "' ";
-  if (body.in_space()) t.fail(kCells, name + "lives in space: cells cannot bend out of the plane");
-  if (body.has_free_lines() || !body.lines.empty())
-    t.fail(kCells, name + "has lines of its own ([[body.line]]): cells have those of the design");
+  if (body.in_space())
+    t.fail(kCells, name + "is in space, but cells have no bending out of the plane");
+  if (body.has_eulerian_lines() || !body.lines.empty())
+    t.fail(kCells, name +
+                       "has given mesh lines ([[body.line]]), but the mesh lines of cells are "
+                       "those of the design");
   for (const std::string& term : body.terms)
     if (!fem::term_row(term).on_cells)
-      t.fail(kCells, "the term \"" + term + "\" of " + name + "does not know cells");
+      t.fail(kCells, "the term \"" + term + "\" of " + name + "is not implemented for cells");
   if (scene.has_heat()) t.fail(kCells, kNoHeat);
   if (scene.time.integrator == "energy_momentum") t.fail(kCells, kNoDiscreteGradient);
 }
@@ -239,7 +274,8 @@ void check_on_cells(const Table& t, const Scene& scene, const Body& body) {
 Verify read_verify(const Table& t, const Scene& scene) {
   Verify verify;
   if (t.has(kRefine) + t.has(kMesh) + t.has(kCells) > 1)
-    t.fail(t.has(kRefine) ? kRefine : kCells, "a finer run has a `mesh`, `refine` or `cells`");
+    t.fail(t.has(kRefine) ? kRefine : kCells,
+           "a verification needs exactly one of `mesh`, `refine` and `cells`");
   if (t.has(kRefine)) {
     verify.refine = t.integer(kRefine);
   } else if (t.has(kCells)) {
@@ -255,11 +291,12 @@ Verify read_verify(const Table& t, const Scene& scene) {
     const Body& body = scene.body(design.body);
     if (verify.mesh &&
         ((*verify.mesh)[0] < body.elements[0] || (*verify.mesh)[1] < body.elements[1]))
-      t.fail(kMesh, "a finer mesh than the elements of '" + body.name + "'");
+      t.fail(kMesh, "the mesh of a verification is at least as fine as the elements of '" +
+                        body.name + "'");
     if (verify.cells > 0) check_on_cells(t, scene, body);
   }
   verify.step = t.number(kStep, scene.time.step);
-  if (verify.step > scene.time.end) t.fail(kStep, "a time step is no longer than time.end [s]");
+  if (verify.step > scene.time.end) t.fail(kStep, "a time step is at most time.end [s]");
   return verify;
 }
 
@@ -273,11 +310,12 @@ std::string read_compare_point(const Table& cycle, const Scene& scene) {
       if (o.body == design.body) points.push_back(o.body + "." + o.name);
   }
   if (points.empty())
-    cycle.fail(kCompareBy,
-               "no design has a tip or an observed point: `compare_by` is \"strain_energy\"");
+    cycle.fail(
+        kCompareBy,
+        "no design has a tip or an observed point, therefore only \"strain_energy\" is allowed");
   if (cycle.has(kComparePoint)) return cycle.choice(kComparePoint, points);
   if (points.size() > 1)
-    cycle.fail(kCompareBy, "it needs `compare_point`, one of " + joined(points));
+    cycle.fail(kCompareBy, "this measure needs `compare_point`, one of " + joined(points));
   return points.front();
 }
 
@@ -289,7 +327,7 @@ void read_cycle(const Table& cycle, Scene& scene) {
   if (scene.cycle.compare_by != CycleMeasure::strain_energy)
     scene.cycle.compare_point = read_compare_point(cycle, scene);
   else if (cycle.has(kComparePoint))
-    cycle.fail(kComparePoint, "with compare_by = \"strain_energy\" this does nothing");
+    cycle.fail(kComparePoint, "this key has no effect with compare_by = \"strain_energy\"");
 }
 
 }  // namespace
@@ -310,15 +348,15 @@ void read_designs(const Table& root, Scene& scene) {
   }
   if (sharing.size() == 1)
     sharing[0].fail(design_keys::kCoupling,
-                    "no other [[design]] has \"shared_mass\" to share with");
+                    "\"shared_mass\" needs a second [[design]] with \"shared_mass\"");
   if (scene.domain) {
-    if (scene.designs.empty()) root.fail(tables::kDesign, "a static scene has a [[design]]");
+    if (scene.designs.empty()) root.fail(tables::kDesign, "a static scene needs a [[design]]");
     return;
   }
   if (scene.designs.empty()) {
     for (const Key* key :
          {&tables::kOptimizer, &tables::kCycle, &tables::kVerify, &tables::kCertificate})
-      if (root.has(*key)) root.table(*key).fail("without a [[design]] this does nothing");
+      if (root.has(*key)) root.table(*key).fail("this table has no effect without a [[design]]");
     if (root.has(tables::kEsl)) scene.esl = read_esl(root.table(tables::kEsl), scene);
     return;
   }

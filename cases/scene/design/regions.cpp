@@ -8,14 +8,15 @@
 namespace flexmorph::cases {
 namespace design_keys {
 
-const io::Key& kSolid = io::key("design", "solid")
-                            .tables_of()
-                            .otherwise_as("none")
-                            .says("Regions that are material, whatever the components do.");
+const io::Key& kSolid =
+    io::key("design", "solid")
+        .tables_of()
+        .otherwise_as("none")
+        .description("Regions that are solid for all layouts of the components.");
 const io::Key& kVoid = io::key("design", "void")
                            .tables_of()
                            .otherwise_as("none")
-                           .says("Regions that are void, whatever the components do.");
+                           .description("Regions that are void for all layouts of the components.");
 
 }  // namespace design_keys
 
@@ -29,25 +30,25 @@ io::Key& region_key(const char* name) {
   return io::shared_key({"design.solid", "design.void"}, name);
 }
 
-constexpr const char* kAnother = "another shape is given";
+constexpr const char* kAnother = "required unless another shape is given";
 
-const io::Choice<bool> kStripChoice(
-    region_key("strip").otherwise_as(kAnother).says("A strip along an end of the domain."),
-    "a strip lies along an end: it", {{"free_end", true}, {"root", false}});
+const io::Choice<bool> kStripChoice(region_key("strip").otherwise_as(kAnother).description(
+                                        "Strip along an end of the domain, `root` or `free_end`."),
+                                    "the end of a strip", {{"free_end", true}, {"root", false}});
 const io::Key& kBox = region_key("box")
                           .numbers(io::any_number("x0, y0, x1, y1 of a box", "m"), 4, 4)
                           .otherwise_as(kAnother)
-                          .says(
-                              "Or a box: x0, y0, x1, y1. Cells whose centres are in it belong to "
-                              "it; outlines have it exactly.");
+                          .description(
+                              "Box x0, y0, x1, y1. Cells with centres inside belong to it; "
+                              "outlines show the exact box.");
 const io::Key& kDisc = region_key("disc")
                            .numbers(io::any_number("x, y, radius of a disc", "m"), 3, 3)
                            .otherwise_as(kAnother)
-                           .says("Or a disc: x, y, radius.");
+                           .description("Disc with centre and radius: x, y, radius.");
 const io::Key& kPolygon = region_key("polygon")
                               .numbers(io::any_number("x0, y0, x1, y1, ... of a polygon", "m"), 6)
                               .otherwise_as(kAnother)
-                              .says("Or a polygon: x0, y0, x1, y1, ...");
+                              .description("Polygon with the corners x0, y0, x1, y1, ...");
 
 }  // namespace
 
@@ -58,7 +59,7 @@ const io::Key& kStripCells = io::shared_key({"design.solid", "design.void"}, "ce
                                  .integer("the width of a strip", 1, 100'000)
                                  .otherwise(2)
                                  .when("`strip` is given")
-                                 .says("How many cells wide it is.");
+                                 .description("Width of the strip, as a number of cells.");
 
 }  // namespace design_keys
 
@@ -100,7 +101,7 @@ Ring read_strip(const Table& t, const Grid& grid) {
 Ring read_box(const Table& t) {
   const std::vector<double> b = t.numbers(kBox);
   if (b[0] >= b[2] || b[1] >= b[3])
-    t.fail(kBox, "x0 < x1 and y0 < y1, in the order x0, y0, x1, y1 [m]");
+    t.fail(kBox, "a box is x0, y0, x1, y1 with x0 < x1 and y0 < y1 [m]");
   return corners_of({{b[0], b[1]}, {b[2], b[3]}});
 }
 
@@ -108,7 +109,7 @@ Ring read_box(const Table& t) {
 /// @param tolerance  largest error of its sides; the tolerance of outlines is a limit, too [m]
 Ring read_disc(const Table& t, const Grid& grid, double tolerance) {
   const std::vector<double> d = t.numbers(kDisc);
-  if (d[2] <= 0) t.fail(kDisc, "a radius is positive, in the order x, y, radius [m]");
+  if (d[2] <= 0) t.fail(kDisc, "a disc is x, y, radius with a positive radius [m]");
   return circle_within({d[0], d[1]}, d[2], std::min(tolerance, mmc::kOutlineTolerance * grid.dx()));
 }
 
@@ -116,15 +117,15 @@ Ring read_disc(const Table& t, const Grid& grid, double tolerance) {
 Ring read_region(const Table& t, const mmc::Plate& plate, double tolerance) {
   const Grid& grid = plate.grid;
   if (t.has(kBox) + t.has(kStrip) + t.has(kDisc) + t.has(kPolygon) != 1)
-    t.fail("a region is one of `box`, `disc`, `polygon`, `strip`");
+    t.fail("a region needs exactly one of `box`, `disc`, `polygon` and `strip`");
   if (t.has(kStrip)) return read_strip(t, grid);
-  if (t.has(kStripCells)) t.fail(kStripCells, "only a strip is as wide as a number of cells");
+  if (t.has(kStripCells)) t.fail(kStripCells, "this key needs a `strip`");
   const io::Key& shape = t.has(kBox) ? kBox : t.has(kDisc) ? kDisc : kPolygon;
   const Ring ring = t.has(kBox)    ? read_box(t)
                     : t.has(kDisc) ? read_disc(t, grid, tolerance)
                                    : read_polygon(t, kPolygon);
   if (count(cells_in(plate, {&ring, 1})) == 0)
-    t.fail(shape, "a " + shape.name + " holds the centre of a cell; the domain is [" +
+    t.fail(shape, "a " + shape.name + " contains the centre of at least one cell; the domain is [" +
                       to_text(grid.x0) + ", " + to_text(grid.x0 + grid.width) + "] x [" +
                       to_text(grid.y0) + ", " + to_text(grid.y0 + grid.height) + "] [m]");
   return ring;
@@ -180,7 +181,7 @@ void read_regions(const Table& t, const Body& body, const Scene& scene, BodyDesi
   if (const auto allowed = mmc::allowed_volume(design.goal); allowed && filled >= *allowed) {
     const std::string words = "the solid regions alone fill " + to_text(filled, 3);
     if (t.has(kMaxVolume)) t.fail(kMaxVolume, words + " of the domain");
-    t.fail(words + " of the domain, and " + to_text(*allowed, 3) + " is allowed");
+    t.fail(words + " of the domain, but only " + to_text(*allowed, 3) + " is allowed");
   }
   check_free_end(t, body, scene, design);
 }

@@ -16,39 +16,44 @@ const Key& kSpace = io::key("body", "space")
                         .word("a space", {"plane"})
                         .otherwise("plane")
                         .when("beams")
-                        .says("Beams live in the plane.");
+                        .description("Space of the beam; beams are in the plane.");
 const Key& kHeight = io::key("body", "height")
                          .number(positive("a height, in the plane of the motion,", "m"))
                          .when("beams")
-                         .says("Of its section, in the plane of the motion.");
-const Key& kWidth = io::key("body", "width")
-                        .number(positive("a width, across the plane of the motion,", "m"))
-                        .when("beams")
-                        .says("Of its section, across the plane of the motion.");
+                         .description("Height of the cross-section, in the plane of the motion.");
+const Key& kWidth =
+    io::key("body", "width")
+        .number(positive("a width, normal to the plane of the motion,", "m"))
+        .when("beams")
+        .description("Width of the cross-section, normal to the plane of the motion.");
 const Key& kElements = io::key("body", "elements")
                            .integer("a number of elements", 1, 100'000)
                            .when("beams")
-                           .says("Elements along the length.");
-const Key& kArc = io::key("body", "arc")
-                      .number(io::between("the angle of an arc", "rad", -6.2, 6.2))
-                      .otherwise(0.0)
-                      .when("beams")
-                      .says("Angle that its axis turns by without stress; 0: it is straight.");
+                           .description("Number of elements along the length.");
+const Key& kArc =
+    io::key("body", "arc")
+        .number(io::between("the angle of an arc", "rad", -6.2, 6.2))
+        .otherwise(0.0)
+        .when("beams")
+        .description(
+            "Angle of the circular arc that the unstressed axis forms; 0 is a straight beam.");
 
 /// Mode of a welded end of a beam: the section keeps its direction and is free to grow (partial),
 /// or it keeps direction and size (edge), or the axis is not stretched, either (full).
 const io::Choice<fem::WeldMode> kBeamMode(
     io::key("joint", "mode")
         .otherwise("partial")
-        .when("weld of a beam")
-        .says("Its section may grow, keeps its size, or the axis is not stretched, either."),
-    "the weld of a beam",
+        .when("`type = \"weld\"`, of a beam to a hub or a rigid body")
+        .description(
+            "The welded section may change its height, keeps it, or also has an unstretched axis."),
+    "a mode of the weld of a beam",
     {{"partial", fem::WeldMode::partial},
      {"edge", fem::WeldMode::edge},
      {"full", fem::WeldMode::full}});
 void read_beam(const Table& t, const Scene& scene, bool has_density, Body& body) {
   body.space = t.choice(kSpace);
-  if (scene.in_space()) t.fail(kElement, "beams live in the plane, the bodies before in space");
+  if (scene.in_space())
+    t.fail(kElement, "beams are in the plane, but the bodies before are in space");
   read_terms(t, scene, body);
   body.length = t.number(kLength);
   body.width = t.number(kHeight);
@@ -59,10 +64,10 @@ void read_beam(const Table& t, const Scene& scene, bool has_density, Body& body)
   body.elements = {t.integer(kElements), 1};
   body.arc = t.number(kArc);
   if (body.arc != 0 && 0.5 * body.width >= body.length / std::abs(body.arc))
-    t.fail(kArc, "half the height stays below the radius of the arc, " +
+    t.fail(kArc, "half of the height of the beam must be less than the radius of its arc, " +
                      io::to_text(body.length / std::abs(body.arc), 4) + " m");
   refuse_flow(t);
-  if (t.has(kLine)) t.fail("the lines of a beam's elements stay where they are: no [[body.line]]");
+  if (t.has(kLine)) t.fail("a beam has no [[body.line]], because its mesh lines do not move");
 }
 
 fem::WeldMode read_weld(const Table& joint) { return joint.choice(kBeamMode); }
@@ -70,7 +75,7 @@ fem::WeldMode read_weld(const Table& joint) { return joint.choice(kBeamMode); }
 std::unique_ptr<fem::Element> make_beam(const Body& body, double /*end*/,
                                         const std::array<int, 2>& count) {
   if (body.arc == 0) return std::make_unique<fem::AncfBeam>(body.length, body.width, count[0]);
-  return std::make_unique<fem::AncfBeam>(fem::even_nodes(body.length, count[0]), body.width,
+  return std::make_unique<fem::AncfBeam>(fem::uniform_nodes(body.length, count[0]), body.width,
                                          fem::arc_reference(body.length, body.arc, count[0]));
 }
 
@@ -89,7 +94,7 @@ const ElementRow kAncfBeam = {.name = "ancf_beam",
                               .read_weld = read_weld,
                               .make = make_beam,
                               .operations = operations,
-                              .in_plane = fem::TermPlace::beam,
+                              .in_plane = fem::TermDomain::beam,
                               .term = "a term of a beam",
                               .thinnest = "height",
                               .across = false,

@@ -15,66 +15,75 @@ using io::positive;
 using io::Table;
 using io::to_text;
 
-constexpr int kMostElements = 100'000;
+constexpr int kMaxElements = 100'000;
 
 const std::vector<std::string>& plate_shapes() {
   static const std::vector<std::string> kNames{"h16", "h12", "q4"};
   return kNames;
 }
 
-const io::Key& kShape =
-    io::key("body", "shape")
-        .word("a shape set", plate_shapes)
-        .otherwise("h16")
-        .when("plates")
-        .says("Shape functions; `h12` has no mixed slopes: too stiff in twist; `q4`: cells.");
-const io::Key& kSpace = io::key("body", "space")
-                            .word("a space", {"plane", "space"})
-                            .otherwise("plane")
-                            .says("Positions have two components, or three; beams: `plane`.");
+const io::Key& kShape = io::key("body", "shape")
+                            .word("a shape set", plate_shapes)
+                            .otherwise("h16")
+                            .when("plates")
+                            .description(
+                                "Shape functions; `h12` lacks mixed slopes and is too stiff in "
+                                "twist; `q4`: bilinear cells.");
+const io::Key& kSpace =
+    io::key("body", "space")
+        .word("a space", {"plane", "space"})
+        .otherwise("plane")
+        .description(
+            "Space of the plate: positions have two components (`plane`) or three (`space`).");
 const io::Key& kWidth = io::key("body", "width")
                             .number(positive("a width", "m"))
                             .when("plates")
-                            .says("Across the length, in its surface.");
-const io::Key& kElements = io::key("body", "elements")
-                               .integers("a number of elements", 1, kMostElements, 2, 2)
-                               .when("plates")
-                               .says("Elements along the length at the start, and across.");
+                            .description("Width of the plate, across its length.");
+const io::Key& kElements =
+    io::key("body", "elements")
+        .integers("a number of elements", 1, kMaxElements, 2, 2)
+        .when("plates")
+        .description("Number of elements along the length at the start, and across.");
 
 /// Reads the model of the material reservoir, its location and the length of the stored material.
-void read_stored(const Table& t, Flow& flow) {
-  const std::string stored = t.choice(flow_keys::kStored);
-  flow.stored = stored == "coil" ? Stored::coil : stored == "rod" ? Stored::rod : Stored::none;
-  for (const Key* key : {&flow_keys::kStoredAt, &flow_keys::kStoredLength})
-    if (flow.stored == Stored::none && t.has(*key))
-      t.fail(*key, "nothing is stored: stored = \"coil\" or \"rod\"");
-  if (t.has(flow_keys::kStoredAt)) {
-    const std::vector<double> at = t.numbers(flow_keys::kStoredAt);
-    flow.stored_at = Vec2(at[0], at[1]);
+void read_reservoir(const Table& t, Flow& flow) {
+  const std::string stored = t.choice(flow_keys::kReservoir);
+  flow.reservoir = stored == "coil"  ? Reservoir::coil
+                   : stored == "rod" ? Reservoir::rod
+                                     : Reservoir::none;
+  for (const Key* key : {&flow_keys::kReservoirAt, &flow_keys::kReservoirLength})
+    if (flow.reservoir == Reservoir::none && t.has(*key))
+      t.fail(*key, "this key needs reservoir = \"coil\" or \"rod\"");
+  if (t.has(flow_keys::kReservoirAt)) {
+    const std::vector<double> at = t.numbers(flow_keys::kReservoirAt);
+    flow.reservoir_at = Vec2(at[0], at[1]);
   }
-  if (t.has(flow_keys::kStoredLength)) flow.stored_length = t.number(flow_keys::kStoredLength);
+  if (t.has(flow_keys::kReservoirLength))
+    flow.reservoir_length = t.number(flow_keys::kReservoirLength);
 }
 
 Flow read_flow(const Table& t, const Scene& scene, bool on_cells) {
   Flow flow;
   if (t.has(flow_keys::kLength)) {
     if (t.has(flow_keys::kSpeed))
-      t.fail(flow_keys::kSpeed, "material flows at a `speed`, or as the drive `length` says");
+      t.fail(flow_keys::kSpeed, "a material flow has either a `speed` or a drive `length`");
     flow.length.drive = t.choice(flow_keys::kLength, names_of(scene.drives));
   } else {
     flow.speed = t.number(flow_keys::kSpeed);
   }
-  read_stored(t, flow);
-  flow.even = t.has(flow_keys::kMesh) && t.choice(flow_keys::kMesh) == "even";
+  read_reservoir(t, flow);
+  flow.uniform = t.has(flow_keys::kMesh) && t.choice(flow_keys::kMesh) == "uniform";
   if (on_cells) {
-    if (flow.even)
+    if (flow.uniform)
       t.fail(flow_keys::kMesh,
-             "cells (shape \"q4\") lie where they lie in the design: their mesh is not \"even\"");
+             "cells (shape \"q4\") keep their locations in the design, therefore their mesh cannot "
+             "be \"uniform\"");
     for (const Key* limit : {&flow_keys::kMaxLength, &flow_keys::kMinLength})
-      if (t.has(*limit)) t.fail(*limit, "cells (shape \"q4\") have no limits of their own");
+      if (t.has(*limit))
+        t.fail(*limit, "cells (shape \"q4\") have no limits of the element length");
     return flow;
   }
-  // settle_mesh() determines the values that are not given.
+  // choose_mesh() determines the values that are not given.
   if (t.has(flow_keys::kMaxLength)) flow.max_length = t.number(flow_keys::kMaxLength);
   if (t.has(flow_keys::kMinLength)) flow.min_length = t.number(flow_keys::kMinLength, 0.0);
   return flow;
@@ -85,11 +94,12 @@ void read_sheet(const Table& t, const Scene& scene, bool has_density, Body& body
   body.shape = t.choice(kShape);
   body.space = t.choice(kSpace);
   if (!scene.bodies.empty() && scene.bodies.front().space != body.space)
-    t.fail(kSpace, "all bodies of a scene live in the plane, or all in space");
+    t.fail(kSpace, "all bodies of a scene are in the plane, or all are in space");
   if (body.on_cells() && body.in_space())
-    t.fail(kShape, "cells (\"q4\") live in the plane: they cannot bend out of it");
+    t.fail(kShape,
+           "cells (\"q4\") are in the plane, because they have no bending out of the plane");
   if (scene.is_mechanism() && body.in_space())
-    t.fail(kSpace, "rigid bodies live in the plane: in their scenes plates do, too");
+    t.fail(kSpace, "in a scene with rigid bodies or welds between bodies, plates are in the plane");
   read_terms(t, scene, body);
   // A drive of the length determines the initial length, too.
   const bool driven = t.has(kFlow) && t.table(kFlow).has(flow_keys::kLength);
@@ -99,19 +109,19 @@ void read_sheet(const Table& t, const Scene& scene, bool has_density, Body& body
   read_material(t, has_density, body);
   const std::vector<int> elements = t.integers(kElements);
   body.elements = {elements[0], elements[1]};
-  if (1.0 * elements[0] * elements[1] > kMostElements)
-    t.fail(kElements, "at most " + to_text(kMostElements) + " elements");
+  if (1.0 * elements[0] * elements[1] > kMaxElements)
+    t.fail(kElements, "a plate has at most " + to_text(kMaxElements) + " elements");
   if (!body.on_cells()) return;
   for (const std::string& term : body.terms)
     if (!fem::term_row(term).on_cells)
-      t.fail(kTerms, "\"" + term + "\" does not know cells (shape \"q4\")");
+      t.fail(kTerms, "\"" + term + "\" is not implemented for cells (shape \"q4\")");
 }
 
 void read_mesh(const Table& t, Body& body) {
   body.lines = read_lines(t, body);
   for (const std::string& term : body.terms)
-    if (body.has_free_lines() && (!fem::term_row(term).free_lines || body.on_cells()))
-      t.fail(kTerms, "\"" + term + "\" does not know free material lines ([[body.line]])");
+    if (body.has_eulerian_lines() && (!fem::term_row(term).eulerian_lines || body.on_cells()))
+      t.fail(kTerms, "\"" + term + "\" is not implemented for free material lines ([[body.line]])");
 }
 
 void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body) {
@@ -123,7 +133,7 @@ void read_plate(const Table& t, const Scene& scene, bool has_density, Body& body
 void read_flowing_plate(const Table& t, const Scene& scene, bool has_density, Body& body) {
   read_sheet(t, scene, has_density, body);
   body.flow = read_flow(t.table(kFlow), scene, body.on_cells());
-  if (scene.statics) t.fail(kElement, "in a [static] analysis no material flows");
+  if (scene.statics) t.fail(kElement, "a [static] analysis has no material flow");
   read_mesh(t, body);
 }
 
@@ -164,7 +174,7 @@ std::unique_ptr<fem::Element> make_plate(const Body& body, double end,
     m.push_back({at, {}});
   for (const BodyLine& line : body.lines) m[static_cast<size_t>(line.index)].free = line.free;
   if (body.flow)
-    for (int i = 0; i < (body.is_even() ? count[0] : 1); ++i)
+    for (int i = 0; i < (body.has_uniform_mesh() ? count[0] : 1); ++i)
       m[static_cast<size_t>(i)].drive = line_drive(body, longest, 1 - 1.0 * i / count[0]);
   for (int j = 0; j <= count[1]; ++j) n.push_back({body.low() + body.width * j / count[1], {}});
   using Shapes = fem::AncfPlate::ShapeSet;
@@ -195,14 +205,14 @@ fem::WeldMode read_weld(const Table& joint) { return read_mode(joint, fem::WeldM
 
 extern const ElementRow kAncfPlate, kAleAncfPlate;
 const ElementRow kAncfPlate = {.name = "ancf_plate",
-                               .sentence = "A plate.",
+                               .sentence = "A plate without material flow.",
                                .read = read_plate,
                                .read_weld = read_weld,
                                .make = make_plate,
                                .operations = operations};
 
 const ElementRow kAleAncfPlate = {.name = "ale_ancf_plate",
-                                  .sentence = "A plate out of which material flows.",
+                                  .sentence = "A plate with material flow through its root.",
                                   .read = read_flowing_plate,
                                   .read_weld = read_weld,
                                   .make = make_plate,

@@ -39,10 +39,10 @@ struct ElementRow {
   /// Returns the estimated operations of one element of a body.
   ElementOperations (*operations)(const Body& body, const fem::Element& element);
 
-  fem::TermPlace in_plane = fem::TermPlace::plane;  ///< Kind of its terms in the plane.
-  const char* term = "a term";                      ///< Noun for one of its terms in messages.
-  const char* thinnest = "thickness";               ///< Key of the smallest dimension of the body.
-  bool across = true;  ///< True if elements are counted across the axis, too.
+  fem::TermDomain in_plane = fem::TermDomain::plane;  ///< Kind of its terms in the plane.
+  const char* term = "a term";                        ///< Noun for one of its terms in messages.
+  const char* thinnest = "thickness";  ///< Key of the smallest dimension of the body.
+  bool across = true;                  ///< True if elements are counted across the axis, too.
 
   /// True if it has material lines, which hubs, sleeves and [[body.line]] need.
   bool lines = true;

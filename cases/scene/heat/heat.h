@@ -15,6 +15,6 @@ BodyHeat read_heat(const io::Table& t, const Scene& scene, const Body& body);
 std::string volume_name(fem::ThermalVolume volume);
 
 /// Returns a temperature rise as text, such as "step of the temperature by 50 K at 1 s".
-std::string temperature_words(const BodyHeat& heat);
+std::string temperature_text(const BodyHeat& heat);
 
 }  // namespace flexmorph::cases

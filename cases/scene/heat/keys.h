@@ -6,7 +6,7 @@
 /// Keys of [body.heat].
 namespace flexmorph::cases::heat_keys {
 
-extern const io::Key &kExpansion, &kRise, &kProfile, &kStart, &kSettle, &kForce;
+extern const io::Key &kExpansion, &kRise, &kProfile, &kStart, &kDuration, &kForce;
 extern const io::Choice<fem::ThermalVolume> kVolume;
 
 }  // namespace flexmorph::cases::heat_keys

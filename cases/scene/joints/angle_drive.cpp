@@ -7,8 +7,10 @@ namespace {
 const io::Key& kAngle = io::key("joint", "angle")
                             .number(io::any_number("an angle", "rad"))
                             .name_of("a drive")
-                            .when("angle_drive")
-                            .says("From the first axis of `a` to that of `b`; a number holds it.");
+                            .when("`type = \"angle_drive\"`")
+                            .description(
+                                "Angle from the first axis of `a` to the first axis of `b`; a "
+                                "number keeps it constant.");
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   const auto [a, b] = read_anchors(t, scene, false, true);
@@ -24,13 +26,14 @@ std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
 }  // namespace
 
 extern const JointRow kAngleDrive;
-const JointRow kAngleDrive = {.name = "angle_drive",
-                              .sentence = "The first axis of b stands at an angle to that of a.",
-                              .read = read,
-                              .make = make,
-                              .coordinate = fem::angle_between,
-                              .drives_angle = true,
-                              .has_force = false,
-                              .has_moment = true};
+const JointRow kAngleDrive = {
+    .name = "angle_drive",
+    .sentence = "Prescribes the angle from the first axis of a to the first axis of b.",
+    .read = read,
+    .make = make,
+    .coordinate = fem::angle_between,
+    .drives_angle = true,
+    .has_force = false,
+    .has_moment = true};
 
 }  // namespace flexmorph::cases

@@ -22,7 +22,7 @@ void read_slider(const io::Table& t, const Scene& scene, Joint& joint) {
 extern const JointRow kRevolute, kSlider;
 
 const JointRow kRevolute = {.name = "revolute",
-                            .sentence = "Two points are one.",
+                            .sentence = "A revolute joint: two points coincide.",
                             .read = read_revolute,
                             .make = [](const Joint& j, const JointParts& parts) {
                               return fem::make_revolute(j.name, parts.a, parts.b);
@@ -30,7 +30,8 @@ const JointRow kRevolute = {.name = "revolute",
 
 const JointRow kSlider = {
     .name = "slider",
-    .sentence = "Point b slides along the first axis of a; their axes are parallel.",
+    .sentence =
+        "A prismatic joint: point b moves along the first axis of a, and both axes stay parallel.",
     .read = read_slider,
     .make = [](const Joint& j,
                const JointParts& parts) { return fem::make_slider(j.name, parts.a, parts.b); },

@@ -4,11 +4,12 @@
 namespace flexmorph::cases {
 namespace {
 
-const io::Key& kDistanceKey = io::key("joint", "distance")
-                                  .number(io::positive("a distance", "m"))
-                                  .name_of("a drive")
-                                  .when("distance")
-                                  .says("Between the points; a number is a massless rod.");
+const io::Key& kDistanceKey =
+    io::key("joint", "distance")
+        .number(io::positive("a distance", "m"))
+        .name_of("a drive")
+        .when("`type = \"distance\"`")
+        .description("Distance between the points; a constant number models a massless rod.");
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   const auto [a, b] = read_anchors(t, scene, true, false);
@@ -24,12 +25,12 @@ std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
 }  // namespace
 
 extern const JointRow kDistance;
-const JointRow kDistance = {.name = "distance",
-                            .sentence =
-                                "Two points are a length apart: a massless rod, or one "
-                                "whose length is driven.",
-                            .read = read,
-                            .make = make,
-                            .coordinate = fem::distance_between};
+const JointRow kDistance = {
+    .name = "distance",
+    .sentence =
+        "Prescribes the distance between two points: a massless rod, or an actuator with a drive.",
+    .read = read,
+    .make = make,
+    .coordinate = fem::distance_between};
 
 }  // namespace flexmorph::cases

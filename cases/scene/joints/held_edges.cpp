@@ -7,21 +7,23 @@ namespace {
 
 const io::Key& kEdges = io::key("joint", "edges")
                             .words("an edge", edge_names)
-                            .when("clamp, support, symmetry")
-                            .says("Edges of a plate in space.");
+                            .when("`type` is \"clamp\", \"support\" or \"symmetry\"")
+                            .description("Edges of the plate in space that the joint holds.");
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   const Body& body = read_jointed_body(t, scene, joint);
   if (!body.in_space())
-    t.fail(joint_keys::kType, "edges are held in space; bodies in the plane have hubs");
+    t.fail(joint_keys::kType,
+           "this joint holds edges of plates in space; bodies in the plane are welded to hubs");
   joint.edges = t.choices(kEdges);
 }
 
 void check(const io::Table& t, const Scene& scene, const Joint& joint) {
   const Body& body = scene.body(joint.body);
-  if (body.flow) t.fail(joint_keys::kBody, "material flows out of a hub: its edges are not held");
+  if (body.flow) t.fail(joint_keys::kBody, "the edges of a body with material flow cannot be held");
   if (body.mesh_changes())
-    t.fail(joint_keys::kBody, "its lines of nodes come and go: edges are not held");
+    t.fail(joint_keys::kBody,
+           "the edges of a body whose lines of nodes are inserted and removed cannot be held");
 }
 
 void read_held(const io::Table& t, const Scene& scene, Joint& joint) {
@@ -41,19 +43,20 @@ extern const JointRow kClamp, kSupport, kSymmetry;
 
 const JointRow kClamp = {
     .name = "clamp",
-    .sentence = "Edges of a plate in space keep place and slope.",
+    .sentence = "Holds the position and the slope of edges of a plate in space.",
     .read = read_clamp,
     .held = [](const Joint& j, const std::string& e) { return fem::clamped_edge(e, j.mode); }};
 
 const JointRow kSupport = {
     .name = "support",
-    .sentence = "Edges of a plate in space stay in its plane, free to turn and to slide.",
+    .sentence =
+        "Holds edges of a plate in space in its undeformed plane; they can rotate and slide.",
     .read = read_held,
     .held = [](const Joint&, const std::string& e) { return fem::supported_edge(e); }};
 
 const JointRow kSymmetry = {
     .name = "symmetry",
-    .sentence = "The plane through an edge, across the plate, is one of symmetry.",
+    .sentence = "Makes the plane through an edge, normal to the plate, a plane of symmetry.",
     .read = read_held,
     .held = [](const Joint&, const std::string& e) { return fem::symmetry_edge(e); }};
 

@@ -24,7 +24,9 @@ Joint read_joint(const Table& t, const Scene& scene) {
 void check_held(const Table& t, const Joint& joint, const Scene& scene) {
   for (const Joint& other : scene.joints)
     if (joint.holds_edges() && other.body == joint.body && other.holds_frame())
-      t.fail(joint_keys::kType, "'" + joint.body + "' sits in a hub or sleeve: hold it there");
+      t.fail(joint_keys::kType, "'" + joint.body +
+                                    "' is held in a hub, a sleeve or a rigid body, therefore its "
+                                    "edges cannot be held by this joint");
 }
 
 /// Throws if no joint holds or drives a free line, because its material coordinate would be an
@@ -36,22 +38,22 @@ void check_lines(const Table& t, const Body& body, const Scene& scene) {
       return j.body == body.name && j.line == line.index && (j.holds_frame() || j.drives_line);
     });
     if (!used)
-      t.fail("nothing holds the free line " + to_text(line.index) +
-             ": a [[joint]] \"sleeve\" or \"weld\" with edge = \"line " + to_text(line.index) +
-             "\", or a \"line_drive\", is missing");
+      t.fail("no joint holds the free line " + to_text(line.index) +
+             ": the case needs a [[joint]] \"sleeve\" or \"weld\" with edge = \"line " +
+             to_text(line.index) + "\", or a \"line_drive\"");
   }
 }
 
 /// Throws if a body with a material reservoir leaves a hub. Stored material acts on rigid bodies
 /// only, because the motion of a hub is prescribed.
-void check_stored(const Table& t, const Body& body, const Scene& scene) {
-  if (!body.flow || body.flow->stored == Stored::none) return;
+void check_reservoir(const Table& t, const Body& body, const Scene& scene) {
+  if (!body.flow || body.flow->reservoir == Reservoir::none) return;
   for (const Joint& joint : scene.joints)
     if (joint.carries(body.name) && !joint.on_rigid_body())
       t.table(body_keys::kFlow)
-          .fail(flow_keys::kStored, "material is stored in a rigid body, but '" + body.name +
-                                        "' leaves the hub '" + joint.to +
-                                        "', whose motion does not depend on it");
+          .fail(flow_keys::kReservoir, "material is stored in a rigid body, but '" + body.name +
+                                           "' leaves the hub '" + joint.to +
+                                           "', whose motion is prescribed");
 }
 
 }  // namespace
@@ -64,7 +66,7 @@ const io::Key& joint_keys::kType = io::key("joint", "type")
                                                  rows.emplace_back(row->name, row->sentence);
                                                return rows;
                                              })
-                                       .says("Its kind.");
+                                       .description("Kind of the joint.");
 
 std::vector<Joint> read_joint_list(const Table& root, const Scene& scene) {
   Scene growing = scene;  // each joint is checked against the joints before it
@@ -83,8 +85,8 @@ void read_joints(const Table& root, Scene& scene) {
     const bool welded = std::any_of(scene.joints.begin(), scene.joints.end(),
                                     [&](const Joint& j) { return j.carries(body.name); });
     if (body.flow && !welded)
-      bodies[i].fail("material flows out of a hub: a [[joint]] with edge = \"root\" is missing");
-    check_stored(bodies[i], body, scene);
+      bodies[i].fail("a body with material flow needs a [[joint]] with edge = \"root\"");
+    check_reservoir(bodies[i], body, scene);
     check_lines(bodies[i], body, scene);
     const bool framed = std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
       return j.body == body.name && j.holds_frame() && j.edge != "free_end";
@@ -94,8 +96,8 @@ void read_joints(const Table& root, Scene& scene) {
     });
     if (at_end && !framed)
       bodies[i].fail(
-          "its free end sits in a hub, and nothing says where its root is: a [[joint]] "
-          "with edge = \"root\" is missing");
+          "its free end is held in a hub, but no joint determines the location of its root: the "
+          "case needs a [[joint]] with edge = \"root\"");
   }
 }
 

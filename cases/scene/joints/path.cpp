@@ -12,8 +12,9 @@ using fem::PlaneCurve;
 const io::Key& coordinate_key(const char* name) {
   return io::key("joint", name)
       .name_of("a drive")
-      .when("path")
-      .says("Of the curve, in the axes of `a` around `point_a`: a drive with `until`.");
+      .when("`type = \"path\"`")
+      .description(std::string("Coordinate ") + name +
+                   " of the curve in the axes of `a` from `point_a`: a drive with `until`.");
 }
 const io::Key &kX = coordinate_key("x"), &kY = coordinate_key("y");
 
@@ -22,19 +23,20 @@ const Drive& read_coordinate(const io::Table& t, const io::Key& key, const Scene
   const Drive& drive = *std::find_if(scene.drives.begin(), scene.drives.end(),
                                      [&](const Drive& d) { return d.name == name; });
   if (!drive.until)
-    t.fail(key, "the drive '" + name + "' is one of time: a coordinate of a curve says `until`");
-  if (!drive.jump.empty()) t.fail(key, "of the drive '" + name + "', " + drive.jump);
+    t.fail(key, "the drive '" + name +
+                    "' is a function of time; a coordinate of a curve needs a drive with `until`");
+  if (!drive.jump.empty()) t.fail(key, "in the drive '" + name + "' " + drive.jump);
   return drive;
 }
 
 PlaneCurve read_curve(const io::Table& t, const Scene& scene) {
   const Drive &x = read_coordinate(t, kX, scene), &y = read_coordinate(t, kY, scene);
   if (*x.until != *y.until)
-    t.fail(kY, "its parameter ends at " + io::to_text(*y.until) + ", that of `x` at " +
-                   io::to_text(*x.until));
+    t.fail(kY, "the parameter of `y` ends at " + io::to_text(*y.until) +
+                   ", but the parameter of `x` ends at " + io::to_text(*x.until));
   PlaneCurve curve(x.motion, y.motion, *x.until);
   if (const double s = curve.corner(); s >= 0)
-    t.fail(kX, "the curve has no direction, or a corner, at parameter " + io::to_text(s, 4));
+    t.fail(kX, "the curve has no tangent, or a corner, at the parameter t = " + io::to_text(s, 4));
   if (curve.crosses_itself()) t.fail(kX, "the curve crosses itself");
   return curve;
 }
@@ -45,8 +47,9 @@ void read(const io::Table& t, const Scene& scene, Joint& joint) {
   joint.a.given = joint.b.given = true;  // the default on the ground is [0, 0]
   if (joint.a.on_ground() && joint.b.on_ground())
     t.fail(
-        "a body is missing: `a` carries the curve, `b` the point; one of them may be the ground");
-  if (joint.a.body == joint.b.body) t.fail(kAnchorB.body, "a joint is between two bodies");
+        "`a` and `b` are both the ground: `a` carries the curve, `b` carries the point, and at "
+        "most one is the ground");
+  if (joint.a.body == joint.b.body) t.fail(kAnchorB.body, "`a` and `b` are two different bodies");
   joint.own = read_curve(t, scene);
   name_between(t, scene, joint);
 }
@@ -58,9 +61,10 @@ std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
 }  // namespace
 
 extern const JointRow kPath;
-const JointRow kPath = {.name = "path",
-                        .sentence = "Point b runs along a curve on a: a cam, a slot, a rail.",
-                        .read = read,
-                        .make = make};
+const JointRow kPath = {
+    .name = "path",
+    .sentence = "Guides point b along a curve on a, such as a cam, a slot or a rail.",
+    .read = read,
+    .make = make};
 
 }  // namespace flexmorph::cases

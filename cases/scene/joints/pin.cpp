@@ -6,13 +6,13 @@ namespace {
 
 const io::Key& kPoint = io::key("joint", "point")
                             .numbers(io::any_number("a material coordinate", "m"), 2, 2)
-                            .when("pin")
-                            .says("The material point.");
+                            .when("`type = \"pin\"`")
+                            .description("Material point that the pin holds.");
 const io::Key& kComponents = io::key("joint", "components")
                                  .words("a component", {"x", "y", "z"})
-                                 .otherwise_as("all of them")
-                                 .when("pin")
-                                 .says("The components of its position that it keeps.");
+                                 .otherwise_as("all components")
+                                 .when("`type = \"pin\"`")
+                                 .description("Components of the position that the pin holds.");
 
 void read(const io::Table& t, const Scene& scene, Joint& joint) {
   const std::vector<std::string> all = {"x", "y", "z"};
@@ -31,16 +31,16 @@ std::unique_ptr<fem::Joint> make(const Joint& joint, const JointParts& parts) {
   std::vector<fem::Motion> rest;
   for (const int c : joint.components) rest.push_back({at[c], 0, 0});
   const auto stay = [rest](double) { return rest; };
-  return parts.rigid
-             ? fem::make_point_drive(joint.name, parts.place(joint.point), stay, joint.components)
-             : fem::make_pin(joint.name, joint.body, joint.point, stay, joint.components);
+  return parts.rigid ? fem::make_point_drive(joint.name, parts.location(joint.point), stay,
+                                             joint.components)
+                     : fem::make_pin(joint.name, joint.body, joint.point, stay, joint.components);
 }
 
 }  // namespace
 
 extern const JointRow kPin;
 const JointRow kPin = {.name = "pin",
-                       .sentence = "A material point keeps some components of its position.",
+                       .sentence = "Holds components of the position of a material point.",
                        .read = read,
                        .make = make,
                        .holds_point = true};

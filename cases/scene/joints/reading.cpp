@@ -20,47 +20,61 @@ const Key& body_key(const char* name, const char* sentence) {
   return io::shared_key({"joint", "spring"}, name)
       .name_of("a body")
       .otherwise("ground")
-      .when("between bodies")
-      .says(sentence);
+      .when("joints between bodies, and springs")
+      .description(sentence);
 }
 
-const Key& point_key(const char* name) {
+const Key& point_key(const char* name, const char* sentence) {
   return io::shared_key({"joint", "spring"}, name)
-      .numbers(any_number("a place", "m"), 2, 2)
-      .otherwise_as("[0, 0] of a rigid body; of the ground: where the other point is at the start")
-      .when("it looks at points")
-      .says("In the axes of the rigid body, a material point of a plate, or on the ground.");
+      .numbers(any_number("a location", "m"), 2, 2)
+      .otherwise_as(
+          "[0, 0] on a rigid body; on the ground the position of the other point at the start; "
+          "required on a plate or beam")
+      .when("joints and springs that use points")
+      .description(sentence);
 }
 
-const Key& angle_key(const char* name) {
+const Key& angle_key(const char* name, const char* sentence) {
   return io::shared_key({"joint", "spring"}, name)
       .number(any_number("an angle", "rad"))
       .otherwise(0.0)
-      .when("it looks at axes")
-      .says("Of its first axis, in the axes of the body.");
+      .when("joints and springs that use axes")
+      .description(sentence);
 }
 
 }  // namespace
 
-const AnchorKeys kAnchorA{body_key("a", "One body; what is left out is the ground."),
-                          point_key("point_a"), angle_key("angle_a")};
-const AnchorKeys kAnchorB{body_key("b", "The other one."), point_key("point_b"),
-                          angle_key("angle_b")};
+const AnchorKeys kAnchorA{
+    body_key("a", "First body of the joint or spring, or the ground."),
+    point_key(
+        "point_a",
+        "Point on `a`: in the axes of a rigid body or the ground, or a material point of a plate."),
+    angle_key("angle_a",
+              "Angle of the first axis of the joint or spring on `a`, in the axes of `a`.")};
+const AnchorKeys kAnchorB{
+    body_key("b", "Second body of the joint or spring, or the ground."),
+    point_key(
+        "point_b",
+        "Point on `b`: in the axes of a rigid body or the ground, or a material point of a plate."),
+    angle_key("angle_b",
+              "Angle of the first axis of the joint or spring on `b`, in the axes of `b`.")};
 
 namespace {
 
-const Key& kName = io::key("joint", "name")
-                       .text("the name of a joint")
-                       .otherwise_as("nothing of it is written")
-                       .when("between bodies")
-                       .says("Forces of joints with names are columns of motion.csv.");
+const Key& kName =
+    io::key("joint", "name")
+        .text("the name of a joint")
+        .otherwise_as("a name made of type and bodies; no columns of forces")
+        .when("joints between bodies")
+        .description("Name of the joint. The forces of a named joint are columns of motion.csv.");
 
 const io::Choice<fem::WeldMode> kMode(
     io::key("joint", "mode")
-        .otherwise_as("`edge`; of a sleeve `direction`")
-        .when("plates: weld, sleeve, clamp")
-        .says("What the edge keeps: its points, the direction that leaves it, or all slopes."),
-    "a weld",
+        .otherwise_as("`edge`; for a sleeve `direction`")
+        .when("`type` is \"weld\", \"sleeve\" or \"clamp\", of a plate")
+        .description("Quantities held at the edge: its points, also the direction of its slope, or "
+                     "all slopes."),
+    "a mode of a joint",
     {{"edge", fem::WeldMode::edge},
      {"direction", fem::WeldMode::direction},
      {"full", fem::WeldMode::full}});
@@ -71,12 +85,15 @@ namespace joint_keys {
 
 const Key& kBody = io::key("joint", "body")
                        .name_of("a body")
-                       .when("of one plate or beam")
-                       .says("The plate or beam that it holds.");
-const Key& kEdge = io::key("joint", "edge")
-                       .text("an edge")
-                       .when("weld of a body, sleeve")
-                       .says("`root`, `free_end`, or an m-line: `line 3`.");
+                       .when("joints of one plate or beam")
+                       .description("Plate or beam that the joint holds.");
+const Key& kEdge =
+    io::key("joint", "edge")
+        .text("an edge")
+        .when("`type` is \"weld\" (of a body to a hub or a rigid body) or \"sleeve\"")
+        .description(
+            "Edge that the joint holds: `root`, `free_end`, or a line across the axis such as "
+            "`line 3`.");
 
 }  // namespace joint_keys
 
@@ -106,12 +123,12 @@ Anchor read_anchor(const Table& t, const AnchorKeys& keys, const Scene& scene, b
     else if (anchor.given)
       anchor.point = read_pair(t, keys.point, Vec2(0, 0));
   } else if (t.has(keys.point)) {
-    t.fail(keys.point, "this joint does not look at points");
+    t.fail(keys.point, "this kind of joint or spring uses no points");
   }
   if (with_axis)
     anchor.angle = t.number(keys.angle);
   else if (t.has(keys.angle))
-    t.fail(keys.angle, "this joint does not look at axes");
+    t.fail(keys.angle, "this kind of joint or spring uses no axes");
   return anchor;
 }
 
@@ -120,8 +137,9 @@ std::array<Anchor, 2> read_anchors(const Table& t, const Scene& scene, bool with
   const Anchor a = read_anchor(t, kAnchorA, scene, with_points, with_axes),
                b = read_anchor(t, kAnchorB, scene, with_points, with_axes);
   if (a.on_ground() && b.on_ground())
-    t.fail("a body is missing: `a`, `b` or both name one; what is left out is the ground");
-  if (a.body == b.body && !a.on_ground()) t.fail(kAnchorB.body, "a joint is between two bodies");
+    t.fail("`a` and `b` are both the ground: `a`, `b` or both must name a body");
+  if (a.body == b.body && !a.on_ground())
+    t.fail(kAnchorB.body, "`a` and `b` are two different bodies");
   return {a, b};
 }
 
@@ -191,7 +209,7 @@ void read_framed_edge(const Table& t, const Body& body, const std::vector<std::s
   joint.line = std::max(0, line_of(joint.edge, body));
   joint.name = joint.body + "." + joint.edge;
   if (!body.row->lines && joint.line != 0)
-    t.fail(joint_keys::kEdge, "a beam is welded at one of its ends");
+    t.fail(joint_keys::kEdge, "a beam is welded at `root` or at `free_end`");
 }
 
 void check_frame(const Table& t, const Scene& scene, const Body& body, const Joint& joint) {
@@ -200,13 +218,16 @@ void check_frame(const Table& t, const Scene& scene, const Body& body, const Joi
   });
   if (free && scene.is_mechanism() && !joint.on_rigid_body())
     t.fail(joint_keys::kEdge,
-           "in a scene with rigid bodies a free line slides in one of them, not in a hub");
+           "in a scene with rigid bodies or welds between bodies, a free line is held in a rigid "
+           "body, not in a hub or a sleeve");
   for (const Joint& other : scene.joints) {
     if (other.body != joint.body || !other.holds_frame()) continue;
     if (other.edge == joint.edge)
-      t.fail(joint_keys::kEdge, "this edge of '" + joint.body + "' is welded already");
+      t.fail(joint_keys::kEdge,
+             "this edge of '" + joint.body + "' is held by another joint already");
     if (joint.edge != "free_end" && other.edge != "free_end")
-      t.fail(joint_keys::kEdge, "'" + joint.body + "' sits in a hub or sleeve already");
+      t.fail(joint_keys::kEdge,
+             "'" + joint.body + "' is held in another hub, sleeve or rigid body already");
   }
 }
 

@@ -18,13 +18,13 @@ namespace flexmorph::cases {
 
 /// The data of a model under construction that JointRow::make() may use.
 struct JointParts {
-  const Scene& scene;         ///< Scene that is built.
-  bool rigid = false;         ///< True in the rigid kinematic model (undeformed plates and beams).
-  fem::MarkerPlace a{}, b{};  ///< Anchors of a joint between bodies, as locations in the model.
+  const Scene& scene;  ///< Scene that is built.
+  bool rigid = false;  ///< True in the rigid kinematic model (undeformed plates and beams).
+  fem::MarkerLocation a{}, b{};  ///< Anchors of a joint between bodies, as locations in the model.
   double angle_a = 0, angle_b = 0;  ///< Angles of their first axes at the start [rad].
 
   /// Location of a material point of the joint's body in the model; for joints on one body.
-  std::function<fem::MarkerPlace(const Vec2& material)> place{};
+  std::function<fem::MarkerLocation(const Vec2& material)> location{};
   /// Position of a material point of the joint's body at the start, in the world [m]; for joints on
   /// one body.
   std::function<Vec3(const Vec2& material)> start{};

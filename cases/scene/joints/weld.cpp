@@ -12,47 +12,51 @@
 namespace flexmorph::cases {
 namespace {
 
-const io::Key& kTo = io::key("joint", "to")
-                         .name_of("a hub or a body")
-                         .when("weld of a body")
-                         .says("What the edge is welded to.");
-const io::Key& kPoint = io::key("joint", "point")
-                            .numbers(io::any_number("a place", "m"), 2, 2)
-                            .otherwise(std::vector<double>{0, 0})
-                            .when("weld of a body to a rigid one")
-                            .says("Where the middle of the edge is, in the axes of that body.");
-const io::Key& kAngle = io::key("joint", "angle")
-                            .number(io::any_number("an angle", "rad"))
-                            .otherwise(0.0)
-                            .when("weld of a body")
-                            .says("Of the edge's normal, in the axes of the hub or rigid body.");
+const io::Key& kTo =
+    io::key("joint", "to")
+        .name_of("a hub or a body")
+        .when("`type = \"weld\"`, of a plate or beam")
+        .description("Hub, rigid body, plate or beam to which the edge is welded.");
+const io::Key& kPoint =
+    io::key("joint", "point")
+        .numbers(io::any_number("a location", "m"), 2, 2)
+        .otherwise(std::vector<double>{0, 0})
+        .when("`type = \"weld\"`, of a plate or beam to a rigid body")
+        .description("Location of the middle of the edge in the axes of the rigid body.");
+const io::Key& kAngle =
+    io::key("joint", "angle")
+        .number(io::any_number("an angle", "rad"))
+        .otherwise(0.0)
+        .when("`type = \"weld\"`, of a plate or beam")
+        .description("Angle of the normal of the edge in the axes of the hub or rigid body.");
 
 const io::Key& kOwnEdge = io::key("joint", "edge")
                               .word("an edge", {"root", "free_end"})
-                              .when("weld of two plates or beams")
-                              .says("The edge of the body.");
+                              .when("`type = \"weld\"`, of two plates or beams")
+                              .description("Welded edge of `body`.");
 const io::Key& kToEdge = io::key("joint", "to_edge")
                              .word("an edge", {"root", "free_end"})
-                             .when("weld of two plates or beams")
-                             .says("The edge of the body that it is welded to.");
+                             .when("`type = \"weld\"`, of two plates or beams")
+                             .description("Welded edge of the plate or beam `to`.");
 const io::Key& kTurn =
     io::key("joint", "angle")
         .number(io::any_number("an angle", "rad"))
-        .otherwise_as("0; half a turn where two roots or two free ends meet")
-        .when("weld of two plates or beams")
-        .says("From the axis of the other body to its own, undeformed, at the weld.");
+        .otherwise_as("0; pi where two roots or two free ends meet")
+        .when("`type = \"weld\"`, of two plates or beams")
+        .description("Angle from the axis of `to` to the axis of `body` at the weld, undeformed.");
 const io::Choice<fem::WeldMode> kJoining(
     io::key("joint", "mode")
-        .otherwise_as("`partial` of two beams, else `edge`")
-        .when("weld of two plates or beams")
-        .says("Sections of beams turn together; edges are one; all slopes are continuous."),
-    "the weld of two bodies",
+        .otherwise_as("`partial` for two beams, else `edge`")
+        .when("`type = \"weld\"`, of two plates or beams")
+        .description("Sections of beams rotate together, edges coincide, or also all slopes are "
+                     "continuous."),
+    "a mode of the weld of two bodies",
     {{"partial", fem::WeldMode::partial},
      {"edge", fem::WeldMode::edge},
      {"full", fem::WeldMode::full}});
 
 /// Reads the frame on a rigid body to which the edge is welded.
-void read_carrier(const io::Table& t, Joint& joint) {
+void read_driven_frame(const io::Table& t, Joint& joint) {
   joint.b.body = joint.to;
   joint.b.point = read_pair(t, kPoint);
   joint.b.angle = t.number(kAngle);
@@ -89,7 +93,9 @@ void refuse_second_weld(const io::Table& t, const io::Key& key, const Scene& sce
     }
   }
   if (reached.contains(to))
-    t.fail(key, "other welds make these one already: of a chain that closes leave out one");
+    t.fail(
+        key,
+        "other welds connect these two already: a closed chain of welds must leave out one weld");
 }
 
 /// Reads the weld of an edge to a hub or a rigid body, which also determines the location of the
@@ -97,14 +103,14 @@ void refuse_second_weld(const io::Table& t, const io::Key& key, const Scene& sce
 void read_welded_edge(const io::Table& t, const Scene& scene, Joint& joint) {
   const Body& body = read_jointed_body(t, scene, joint);
   const std::vector<std::string> rigid = names_of(scene.rigid_bodies);
-  std::vector<std::string> carriers = names_of(scene.hubs);
-  carriers.insert(carriers.end(), rigid.begin(), rigid.end());
-  joint.to = t.choice(rigid.empty() ? kTo.called("a hub") : kTo, carriers);
+  std::vector<std::string> driven_frames = names_of(scene.hubs);
+  driven_frames.insert(driven_frames.end(), rigid.begin(), rigid.end());
+  joint.to = t.choice(rigid.empty() ? kTo.called("a hub") : kTo, driven_frames);
   const bool on_rigid = std::find(rigid.begin(), rigid.end(), joint.to) != rigid.end();
   using Names = std::vector<std::string>;
   read_framed_edge(t, body, Names{"root", "free_end"}, joint);
   if (on_rigid)
-    read_carrier(t, joint);
+    read_driven_frame(t, joint);
   else
     joint.angle = t.number(kAngle);
   joint.mode = body.row->read_weld(t);
@@ -128,9 +134,9 @@ Anchor anchor_at(const io::Table& t, const EdgeKeys& keys, const Body& body, dou
         return l.index == (root ? 0 : body.elements[0]);
       });
   if (moves)
-    t.fail(keys.edge, "this edge of '" + body.name +
-                          "' moves through the material: it sits in a hub, in a sleeve or on a "
-                          "rigid body");
+    t.fail(keys.edge,
+           "this edge of '" + body.name +
+               "' moves through the material: only a hub, a sleeve or a rigid body can hold it");
   return {body.name, {root ? 0 : body.longest(run_end), 0}, root ? 0 : body.arc};
 }
 
@@ -139,14 +145,14 @@ void check_plates(const io::Table& t, const Body& a, const Body& b, const Joint&
                   double angle) {
   if (std::abs(std::sin(angle)) > 1e-9)
     t.fail(kTurn,
-           "plates meet edge on edge: 0, or half a turn; at an angle there is a rigid body "
-           "between them");
+           "the angle of a weld of two plates is 0 or pi; for another angle weld both plates to a "
+           "rigid body between them");
   if (std::abs(a.width - b.width) > 1e-9 * a.width || a.elements[1] != b.elements[1] ||
       a.shape != b.shape)
-    t.fail(kTo, "plates are welded node on node: '" + a.name + "' and '" + b.name +
-                    "' need the same width, elements across and kind of elements");
+    t.fail(kTo, "plates are welded node to node: '" + a.name + "' and '" + b.name +
+                    "' need equal widths, equal numbers of elements across and equal shape sets");
   if (joint.mode == fem::WeldMode::partial)
-    t.fail(kJoining, "only beams are welded partially: \"edge\" or \"full\"");
+    t.fail(kJoining, "\"partial\" is for beams only; plates are welded by \"edge\" or \"full\"");
 }
 
 /// Reads the weld of two plates or beams at their edges: a is the body that `to` names, b the body
@@ -154,7 +160,7 @@ void check_plates(const io::Table& t, const Body& a, const Body& b, const Joint&
 void read_joined_edges(const io::Table& t, const Scene& scene, Joint& joint) {
   const Body& b = scene.body(read_flexible(t, joint_keys::kBody, scene));
   const Body& a = scene.body(t.choice(kTo, names_of(scene.bodies)));
-  if (&a == &b) t.fail(kTo, "a weld is between two bodies");
+  if (&a == &b) t.fail(kTo, "a weld connects two different bodies");
   joint.edge_a = t.choice(kToEdge);
   joint.edge_b = t.choice(kOwnEdge);
   joint.a = anchor_at(t, {kTo, kToEdge}, a, scene.time.end, joint.edge_a);
@@ -200,7 +206,7 @@ extern const JointRow kWeld;
 const JointRow kWeld = {
     .name = "weld",
     .sentence =
-        "An edge is one with a hub, a rigid body or another edge; or two rigid bodies are one.",
+        "Welds an edge to a hub, a rigid body or another edge, or two rigid bodies to each other.",
     .read = read,
     .make = make,
     .has_moment = true};

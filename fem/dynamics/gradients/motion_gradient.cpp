@@ -13,10 +13,11 @@ namespace {
 /// One motion with the data of its gradient.
 class Gradient {
  public:
-  Gradient(const Model& model, std::span<const Growth> growths, const MotionSettings& settings,
-           std::span<const MotionObjective> objectives, const GradientSettings& gradient)
+  Gradient(const Model& model, std::span<const MovingRoot> moving_roots,
+           const MotionSettings& settings, std::span<const MotionObjective> objectives,
+           const GradientSettings& gradient)
       : model_(model),
-        growths_(growths),
+        moving_roots_(moving_roots),
         settings_(settings),
         objectives_(objectives),
         gradient_(gradient),
@@ -32,7 +33,7 @@ class Gradient {
   std::vector<double> values() {
     Workspace model(model_);
     settings_.keep = Keep::nothing;
-    integrate(model, growths_, settings_, [&](const MotionStep& step) { watched_.see(step); });
+    integrate(model, moving_roots_, settings_, [&](const MotionStep& step) { watched_.see(step); });
     std::vector<double> out;
     for (size_t k = 0; k < objectives_.size(); ++k)
       out.push_back(watched_.mean(k, settings_.stops).value);
@@ -45,7 +46,7 @@ class Gradient {
     auto model = std::make_unique<Workspace>(model_);
     move(*model, out.motion);
     const double moved = cpu_seconds();
-    Sweep sweep(objectives_, gradient_, settings_);
+    AdjointSweep sweep(objectives_, gradient_, settings_);
     begin_at_end(*model, sweep);
     if (memories_.empty()) {
       sweep.back(*model, out.motion.trajectory, watched_.times().size() - 1, true);
@@ -68,14 +69,16 @@ class Gradient {
   void check() const {
     if (const std::string why = no_gradient_because(model_, settings_); !why.empty())
       throw Error::input("the gradient of a motion: " + why);
-    if (objectives_.empty()) throw Error::input("the gradient of a motion: of nothing");
+    if (objectives_.empty()) throw Error::input("the gradient of a motion: no objective is given");
     for (const MotionObjective& o : objectives_)
       if (!o.measure || !(o.exponent >= 1))
-        throw Error::input("the gradient of a motion: of a measure, with an exponent of 1 or more");
+        throw Error::input(
+            "the gradient of a motion: an objective must have a measure, and an exponent of 1 or "
+            "more");
   }
 
   /// Start of a part of the motion, as an archive.
-  struct TakenDown {
+  struct SavedCheckpoint {
     std::string memory;
     double time = 0;
     size_t seen = 0;  // index of its first point among all observed times
@@ -87,18 +90,18 @@ class Gradient {
     settings.keep = gradient_.checkpoints > 0 ? Keep::nothing : Keep::steps;
     const double apart = settings.end / std::max(1, gradient_.checkpoints);
     if (gradient_.checkpoints > 0)
-      settings.between_steps = [&](const TakeDown& take_down) {
+      settings.between_steps = [&](const SaveCheckpoint& save_checkpoint) {
         const double t = watched_.times().back();
         const auto next = static_cast<double>(memories_.size() + 1) * apart;
         if (t < next - 1e-9 * settings.end || t > settings.end - 0.5 * settings.step) return;
-        memories_.push_back({take_down(), t, watched_.times().size() - 1});
+        memories_.push_back({save_checkpoint(), t, watched_.times().size() - 1});
       };
-    result =
-        integrate(model, growths_, settings, [&](const MotionStep& step) { watched_.see(step); });
+    result = integrate(model, moving_roots_, settings,
+                       [&](const MotionStep& step) { watched_.see(step); });
   }
 
   /// Sets the data of the sweep at the end of the motion.
-  void begin_at_end(const Workspace& model, Sweep& sweep) const {
+  void begin_at_end(const Workspace& model, AdjointSweep& sweep) const {
     for (size_t k = 0; k < objectives_.size(); ++k) {
       Swept& s = sweep.all().emplace_back();
       s.by.set_zero(model.n_dofs(), model.n_constraints());
@@ -106,13 +109,13 @@ class Gradient {
       WatchedMeasures::Mean mean = watched_.mean(k, settings_.stops);
       s.out.value = mean.value;
       s.slopes = std::move(mean.slopes);
-      s.out.by_factors = model.no_slopes();
+      s.out.d_factors = model.zero_scale_factor_gradients();
       s.out.by_parameters.setZero(static_cast<Eigen::Index>(gradient_.parameters.size()));
     }
   }
 
   /// Integrates the parts a second time, from the last to the first, and sweeps back through each.
-  void back_by_parts(Sweep& sweep) {
+  void back_by_parts(AdjointSweep& sweep) {
     size_t last = watched_.times().size() - 1;
     for (size_t k = memories_.size() + 1; k-- > 0;) {
       MotionSettings settings = settings_;
@@ -120,7 +123,7 @@ class Gradient {
       if (k > 0) settings.memory = memories_[k - 1].memory;
       if (k < memories_.size()) settings.until = memories_[k].time;
       Workspace model(model_);
-      const MotionResult part = integrate(model, growths_, settings, [](const MotionStep&) {});
+      const MotionResult part = integrate(model, moving_roots_, settings, [](const MotionStep&) {});
       sweep.back(model, part.trajectory, last, k == 0);
       if (k > 0) {
         last = memories_[k - 1].seen;
@@ -132,55 +135,58 @@ class Gradient {
     }
   }
 
-  void back_through_start(Workspace& model, Sweep& sweep) {
+  void back_through_start(Workspace& model, AdjointSweep& sweep) {
     // Same value as in Run::begin() of motion.cpp.
     const double delta = std::min(1e-4, 0.5 * settings_.end);
     const VectorXd given =
-        start_state(model, growths_, 0, settings_.start, settings_.placement, delta).v;
+        start_state(model, moving_roots_, 0, settings_.start, settings_.body_poses, delta).v;
     sweep.back_through_start(model, start_, given);
     for (Swept& s : sweep.all())
-      derive_start(model, growths_, 0, settings_.start, settings_.placement, delta, s.by.q, s.by.v,
+      derive_start(model, moving_roots_, 0, settings_.start, settings_.body_poses, delta, s.by.q,
+                   s.by.v,
                    [&](const State& x, const VectorXd& psi) { sweep.add_work(x, psi, s.out); });
   }
 
   const Model& model_;
-  std::span<const Growth> growths_;
+  std::span<const MovingRoot> moving_roots_;
   MotionSettings settings_;
   std::span<const MotionObjective> objectives_;
   const GradientSettings& gradient_;
   WatchedMeasures watched_;
-  std::vector<TakenDown> memories_;
+  std::vector<SavedCheckpoint> memories_;
   State start_;
 };
 
 }  // namespace
 
 std::string no_gradient_because(const Model& model, const MotionSettings& settings) {
-  if (settings.adaptive) return "steps that adapt depend on the design: time.tolerance";
+  if (settings.adaptive) return "adaptive time steps (time.tolerance) depend on the design";
   if (settings.integrator != "generalized_alpha")
-    return "integrator \"" + settings.integrator + "\" has none, \"generalized_alpha\" does";
-  if (!settings.kinks.empty()) return "drives have kinks, where accelerations may jump";
+    return "integrator \"" + settings.integrator +
+           "\" does not support it; use \"generalized_alpha\"";
+  if (!settings.discontinuities.empty())
+    return "a drive has discontinuities, where accelerations may jump";
   for (const Body& body : model.bodies()) {
     if (body.element->n_scalars() > 0)
       return "the material lines of body '" + body.name +
-             "' are free, and when its mesh changes depends on the design";
-    if (body.heat) return "body '" + body.name + "' is hot";
-    if (body.element->dim() == 3) return "body '" + body.name + "' lives in space";
+             "' are free, and the times at which its mesh changes depend on the design";
+    if (body.heat) return "body '" + body.name + "' is heated";
+    if (body.element->dim() == 3) return "body '" + body.name + "' is three-dimensional";
   }
   return {};
 }
 
-MotionGradients motion_gradients(const Model& model, std::span<const Growth> growths,
+MotionGradients motion_gradients(const Model& model, std::span<const MovingRoot> moving_roots,
                                  const MotionSettings& settings,
                                  std::span<const MotionObjective> objectives,
                                  const GradientSettings& gradient) {
-  return Gradient(model, growths, settings, objectives, gradient).go();
+  return Gradient(model, moving_roots, settings, objectives, gradient).go();
 }
 
-std::vector<double> motion_values(const Model& model, std::span<const Growth> growths,
+std::vector<double> motion_values(const Model& model, std::span<const MovingRoot> moving_roots,
                                   const MotionSettings& settings,
                                   std::span<const MotionObjective> objectives) {
-  return Gradient(model, growths, settings, objectives, {}).values();
+  return Gradient(model, moving_roots, settings, objectives, {}).values();
 }
 
 }  // namespace flexmorph::fem

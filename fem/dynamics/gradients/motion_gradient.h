@@ -47,7 +47,7 @@ struct MotionGradient {
   double value = 0;
   /// Derivatives with respect to the scale factors of the cells of every body; empty for a body
   /// without design.
-  std::vector<FactorSlopes> by_factors;
+  std::vector<ScaleFactorGradient> d_factors;
   /// Derivatives with respect to GradientSettings::parameters.
   VectorXd by_parameters;
 };
@@ -89,14 +89,14 @@ struct MotionGradients {
 ///
 /// Source: Callejo; Sonneville; Bauchau (2019), for a fixed mesh; fem/README.md, Gradients of a
 /// motion.
-MotionGradients motion_gradients(const Model& model, std::span<const Growth> growths,
+MotionGradients motion_gradients(const Model& model, std::span<const MovingRoot> moving_roots,
                                  const MotionSettings& settings,
                                  std::span<const MotionObjective> objectives,
                                  const GradientSettings& gradient = {});
 
 /// Integrates the motion of a model and returns the values J of its objectives, without gradients.
 /// @throws Error as motion_gradients().
-std::vector<double> motion_values(const Model& model, std::span<const Growth> growths,
+std::vector<double> motion_values(const Model& model, std::span<const MovingRoot> moving_roots,
                                   const MotionSettings& settings,
                                   std::span<const MotionObjective> objectives);
 

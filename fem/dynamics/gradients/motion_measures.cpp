@@ -1,6 +1,6 @@
 #include "fem/dynamics/gradients/motion_measures.h"
 
-#include "fem/dynamics/mesh_changes/growth.h"
+#include "fem/dynamics/mesh_changes/moving_root.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -10,9 +10,9 @@ class StrainEnergy final : public MotionMeasure {
   double value(Workspace& model, const State& x) const override {
     return 2 * model.strain_energy(x);
   }
-  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
-                  std::vector<FactorSlopes>& by_factors) const override {
-    model.add_strain_slopes(x, 2 * weight, by_state.q, by_factors);
+  void add_gradient(Workspace& model, const State& x, double weight, StateGradient& by_state,
+                    std::vector<ScaleFactorGradient>& d_factors) const override {
+    model.add_strain_energy_gradient(x, 2 * weight, by_state.q, d_factors);
   }
 };
 
@@ -24,15 +24,18 @@ Vec2 direction(const Vec2& d) {
 
 class Deflection final : public MotionMeasure {
  public:
-  Deflection(std::string body, const Vec2& material, Carrier carrier, int line)
-      : body_(std::move(body)), material_(material), carrier_(std::move(carrier)), line_(line) {}
+  Deflection(std::string body, const Vec2& material, DrivenFrame driven_frame, int line)
+      : body_(std::move(body)),
+        material_(material),
+        driven_frame_(std::move(driven_frame)),
+        line_(line) {}
 
   double value(Workspace& model, const State& x) const override {
     model.prepare(x);
     return difference(model, x).norm();
   }
-  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
-                  std::vector<FactorSlopes>&) const override {
+  void add_gradient(Workspace& model, const State& x, double weight, StateGradient& by_state,
+                    std::vector<ScaleFactorGradient>&) const override {
     model.prepare(x);
     const Vec2 pull = weight * direction(difference(model, x));
     const Body& body = model.body(body_);
@@ -42,11 +45,11 @@ class Deflection final : public MotionMeasure {
     for (size_t k = 0; k < vectors.size(); ++k)
       by_state.q.segment<2>(body.first_dof + 2 * vectors[k]) +=
           t.N(0, static_cast<Eigen::Index>(k)) * pull;
-    if (carrier_.body().empty()) return;
+    if (driven_frame_.body().empty()) return;
     // The point o + R p of the carrier is r_b + arm.x u + arm.y v, v = u rotated by 90 degrees,
     // which is linear in r_b and u.
-    const int r = model.body(carrier_.body()).first_dof;
-    const Vec2 arm = carrier_.point() + rotation(carrier_.angle()) * in_frame(model);
+    const int r = model.body(driven_frame_.body()).first_dof;
+    const Vec2 arm = driven_frame_.point() + rotation(driven_frame_.angle()) * in_frame(model);
     by_state.q.segment<2>(r) -= pull;
     by_state.q.segment<2>(r + 2) -=
         Vec2(arm.x() * pull.x() + arm.y() * pull.y(), arm.x() * pull.y() - arm.y() * pull.x());
@@ -58,31 +61,31 @@ class Deflection final : public MotionMeasure {
   }
   Vec2 difference(const Workspace& model, const State& x) const {
     const Vec2 at = point_position(model.body(body_), x, material_).head<2>();
-    if (carrier_.body().empty()) {
-      const FrameMotion f = carrier_.drive()(x.t);
+    if (driven_frame_.body().empty()) {
+      const FrameMotion f = driven_frame_.drive()(x.t);
       return at - f.origin - rotation(f.angle) * in_frame(model);
     }
-    const int r = model.body(carrier_.body()).first_dof;
-    const Vec2 arm = carrier_.point() + rotation(carrier_.angle()) * in_frame(model),
+    const int r = model.body(driven_frame_.body()).first_dof;
+    const Vec2 arm = driven_frame_.point() + rotation(driven_frame_.angle()) * in_frame(model),
                u = x.q.segment<2>(r + 2);
     return at - x.q.segment<2>(r) - arm.x() * u - arm.y() * Vec2(-u.y(), u.x());
   }
 
   std::string body_;
   Vec2 material_;
-  Carrier carrier_;
+  DrivenFrame driven_frame_;
   int line_;
 };
 
-class PlaceError final : public MotionMeasure {
+class LocationError final : public MotionMeasure {
  public:
-  PlaceError(std::string body, std::array<std::function<Motion(double)>, 2> path)
+  LocationError(std::string body, std::array<std::function<Motion(double)>, 2> path)
       : body_(std::move(body)), path_(std::move(path)) {}
   double value(Workspace& model, const State& x) const override {
     return difference(model, x).norm();
   }
-  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
-                  std::vector<FactorSlopes>&) const override {
+  void add_gradient(Workspace& model, const State& x, double weight, StateGradient& by_state,
+                    std::vector<ScaleFactorGradient>&) const override {
     by_state.q.segment<2>(model.body(body_).first_dof) += weight * direction(difference(model, x));
   }
 
@@ -102,8 +105,8 @@ class JointForce final : public MotionMeasure {
   JointForce(std::string joint, std::string body)
       : joint_(std::move(joint)), body_(std::move(body)) {}
   double value(Workspace& model, const State& x) const override { return force(model, x).norm(); }
-  void add_slopes(Workspace& model, const State& x, double weight, StateSlopes& by_state,
-                  std::vector<FactorSlopes>&) const override {
+  void add_gradient(Workspace& model, const State& x, double weight, StateGradient& by_state,
+                    std::vector<ScaleFactorGradient>&) const override {
     const Vec2 pull = -weight * direction(force(model, x));
     const VectorXd along = shift(model, pull);
     const auto [first, last] = rows(model);
@@ -160,12 +163,12 @@ std::shared_ptr<const MotionMeasure> measure_strain_energy() {
   return std::make_shared<StrainEnergy>();
 }
 std::shared_ptr<const MotionMeasure> measure_deflection(std::string body, const Vec2& material,
-                                                        Carrier carrier, int line) {
-  return std::make_shared<Deflection>(std::move(body), material, std::move(carrier), line);
+                                                        DrivenFrame driven_frame, int line) {
+  return std::make_shared<Deflection>(std::move(body), material, std::move(driven_frame), line);
 }
-std::shared_ptr<const MotionMeasure> measure_place_error(
+std::shared_ptr<const MotionMeasure> measure_location_error(
     std::string body, std::array<std::function<Motion(double)>, 2> path) {
-  return std::make_shared<PlaceError>(std::move(body), std::move(path));
+  return std::make_shared<LocationError>(std::move(body), std::move(path));
 }
 std::shared_ptr<const MotionMeasure> measure_joint_force(std::string joint, std::string body) {
   return std::make_shared<JointForce>(std::move(joint), std::move(body));

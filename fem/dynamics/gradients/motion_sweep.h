@@ -13,18 +13,18 @@ namespace flexmorph::fem {
 
 /// Data of one objective during the backward sweep.
 struct Swept {
-  StateSlopes by;              ///< Derivatives of J with respect to the present state of the sweep.
+  StateGradient by;            ///< Derivatives of J with respect to the present state of the sweep.
   VectorXd alpha;              ///< Derivatives of J by the algorithmic acceleration α (n_dofs).
   MotionGradient out;          ///< Value and gradient of J, as far as they are summed up.
   std::vector<double> slopes;  ///< Derivatives ∂J/∂m(t_i) for all observed times.
 };
 
 /// Backward sweep through a motion, one part of the motion at a time.
-class Sweep {
+class AdjointSweep {
  public:
   /// Creates the sweep of one motion. The arguments must outlive it.
-  Sweep(std::span<const MotionObjective> objectives, const GradientSettings& settings,
-        const MotionSettings& motion)
+  AdjointSweep(std::span<const MotionObjective> objectives, const GradientSettings& settings,
+               const MotionSettings& motion)
       : objectives_(objectives),
         settings_(settings),
         motion_(motion),
@@ -83,7 +83,7 @@ class Sweep {
 
   /// Adds ψ · ∂F/∂p to `out` for the scale factors of all cells and for all parameters p.
   void add_work(const State& x, const VectorXd& psi, MotionGradient& out) {
-    model_->add_factor_slopes(x, psi, out.by_factors);
+    model_->add_scale_factor_gradient(x, psi, out.d_factors);
     for (size_t k = 0; k < settings_.parameters.size(); ++k)
       out.by_parameters[static_cast<Eigen::Index>(k)] += settings_.parameters[k](x, psi);
   }
@@ -93,7 +93,7 @@ class Sweep {
   void add_measures(const State& x, size_t at) {
     for (size_t k = 0; k < all_.size(); ++k)
       if (const double w = all_[k].slopes[at]; w != 0)
-        objectives_[k].measure->add_slopes(*model_, x, w, all_[k].by, all_[k].out.by_factors);
+        objectives_[k].measure->add_gradient(*model_, x, w, all_[k].by, all_[k].out.d_factors);
   }
 
   /// Propagates the derivatives through a step of size h that ends at x. The step is written as

@@ -11,9 +11,9 @@ namespace {
 
 /// Returns true if the ratio of the weights of stiffness and mass is about the same in both.
 bool alike(const Weights& a, const Weights& b) {
-  constexpr double kFar = 0.3;
+  constexpr double kMaxChange = 0.3;
   const double x = a.q * b.a, y = b.q * a.a;
-  return std::abs(x - y) <= kFar * std::max(std::abs(x), std::abs(y));
+  return std::abs(x - y) <= kMaxChange * std::max(std::abs(x), std::abs(y));
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ void TransposedSystem::set_carried(const State& x, std::span<const Turning> turn
 void TransposedSystem::take(const State& x, const Weights& w) {
   q_ = x.q;
   weights_ = w;
-  if (version_ != model_.pattern_version()) make_room();
+  if (version_ != model_.pattern_version()) reserve_memory();
   is_factored_ = is_factored_ && alike(w, factored_weights_);
   const int n = model_.n_dofs();
   for (int column = 0; column < matrix_.cols(); ++column)
@@ -55,20 +55,20 @@ void TransposedSystem::take(const State& x, const Weights& w) {
 }
 
 /// Allocates the vectors and analyses the matrix of a new mesh.
-void TransposedSystem::make_room() {
+void TransposedSystem::reserve_memory() {
   version_ = model_.pattern_version();
   is_factored_ = false;
   scales_ = model_.scales();
   solver_.analyze(matrix_);
-  basis_.resize(matrix_.rows(), kMostDirections + 1);
-  directions_.resize(matrix_.rows(), kMostDirections);
+  basis_.resize(matrix_.rows(), kMaxDirections + 1);
+  directions_.resize(matrix_.rows(), kMaxDirections);
 }
 
 void TransposedSystem::factorize() {
-  constexpr double kMiss = 0.02;  // same value as in the time steps
+  constexpr double kFactorError = 0.02;  // same value as in the time steps
   factored_ = matrix_;
   factored_weights_ = weights_;
-  solver_.factorize(factored_, kMiss);
+  solver_.factorize(factored_, kFactorError);
   is_factored_ = true;
   turns_.begin(model_, q_);
   turned_.clear();
@@ -118,20 +118,20 @@ void TransposedSystem::solve_kept(const VectorXd& right, VectorXd& out) {
 /// @param left  Norm of the residual rest_.   @param aim  Norm at which the cycle ends.
 /// @returns false if the residual decreased too slowly.
 bool TransposedSystem::improve(double left, double aim, bool fresh) {
-  // A kept factorization is replaced if after kLook solutions it has not reduced the residual by
-  // the factor kSlow. A new factorization costs as much as a dozen solutions.
-  constexpr int kLook = 4;
+  // A kept factorization is replaced if after kCheckedIterations solutions it has not reduced the
+  // residual by the factor kSlow. A new factorization costs as much as a dozen solutions.
+  constexpr int kCheckedIterations = 4;
   constexpr double kSlow = 1e-4;
-  Eigen::Matrix<double, kMostDirections + 1, kMostDirections> h;
-  Eigen::Matrix<double, kMostDirections + 1, 1> g;
-  std::array<Eigen::JacobiRotation<double>, kMostDirections> givens;
+  Eigen::Matrix<double, kMaxDirections + 1, kMaxDirections> h;
+  Eigen::Matrix<double, kMaxDirections + 1, 1> g;
+  std::array<Eigen::JacobiRotation<double>, kMaxDirections> givens;
   h.setZero();
   g.setZero();
   g[0] = left;
   basis_.col(0) = rest_ / left;
   int k = 0;
   bool slow = false;
-  while (k < kMostDirections && !slow && std::abs(g[k]) > aim) {
+  while (k < kMaxDirections && !slow && std::abs(g[k]) > aim) {
     image_ = basis_.col(k);
     solve_kept(image_, solution_);
     directions_.col(k) = solution_;
@@ -151,7 +151,7 @@ bool TransposedSystem::improve(double left, double aim, bool fresh) {
     h.col(k).applyOnTheLeft(k, k + 1, last.adjoint());
     g.applyOnTheLeft(k, k + 1, last.adjoint());
     ++k;
-    slow = !fresh && k == kLook && std::abs(g[k]) > kSlow * left;
+    slow = !fresh && k == kCheckedIterations && std::abs(g[k]) > kSlow * left;
   }
   const VectorXd y = h.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(g.head(k));
   found_.noalias() += directions_.leftCols(k) * y;
@@ -162,8 +162,8 @@ void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorX
                              VectorXd& chi) {
   // If the residual no longer decreases with a new factorization, it is at round-off or the matrix
   // is singular.
-  constexpr double kEnough = 2e-13, kStuck = 0.5, kRoundOff = 1e-7;
-  constexpr int kMost = 8;
+  constexpr double kResidualTolerance = 2e-13, kMaxContraction = 0.5, kRoundOff = 1e-7;
+  constexpr int kMaxIterations = 8;
   const int n = model_.n_dofs(), m = model_.n_constraints();
   right_.resize(n + m);
   right_ << seed.cwiseQuotient(scales_), rows;
@@ -173,9 +173,9 @@ void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorX
   if (fresh && size > 0) factorize();
   rest_ = right_;
   double left = size;
-  for (int k = 0; k < kMost && left > kEnough * size; ++k) {
+  for (int k = 0; k < kMaxIterations && left > kResidualTolerance * size; ++k) {
     last_ = found_;
-    const bool fast = improve(left, kEnough * size, fresh);
+    const bool fast = improve(left, kResidualTolerance * size, fresh);
     rest_ = right_;
     rest_.noalias() -= matrix_.transpose() * found_;
     const double now = rest_.norm();
@@ -184,7 +184,7 @@ void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorX
       rest_ = right_;
       rest_.noalias() -= matrix_.transpose() * found_;
     }
-    const bool stuck = !(now < kStuck * left);
+    const bool stuck = !(now < kMaxContraction * left);
     left = std::min(now, left);
     if (fresh && stuck) break;
     if (!fresh && (!fast || stuck)) {
@@ -193,7 +193,7 @@ void TransposedSystem::solve(const VectorXd& seed, const VectorXd& rows, VectorX
     }
   }
   if (left > kRoundOff * size)
-    throw Error::numerical("adjoint: the equations of a step are singular, or nearly so");
+    throw Error::numerical("adjoint: the equations of a step are singular or nearly singular");
   psi = found_.head(n).cwiseQuotient(scales_);
   chi = found_.tail(m);
 }

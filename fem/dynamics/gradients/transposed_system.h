@@ -53,11 +53,11 @@ class TransposedSystem {
   int iterations() const { return iterations_; }
 
  private:
-  static constexpr int kMostDirections = 12;
+  static constexpr int kMaxDirections = 12;
 
   void take(const State& x, const Weights& w);
   VectorXd part(const State& x, const Weights& w, const VectorXd& psi);
-  void make_room();
+  void reserve_memory();
   void factorize();
   bool improve(double left, double aim, bool fresh);
   void solve_kept(const VectorXd& right, VectorXd& out);
@@ -65,7 +65,7 @@ class TransposedSystem {
   void turn(VectorXd& x, bool back) const;
 
   Workspace& model_;
-  UnsymmetricSolver solver_;
+  DirectSolver solver_;
   Constraints constraints_;
   SparseMatrix matrix_, factored_, mass_;
   VectorXd scales_, right_, rest_, found_, last_;

@@ -8,15 +8,15 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Number of unknowns up to which KLU, which keeps its pivots, is faster than UnsymmetricSolver.
-constexpr int kSmall = 400;
+/// Number of unknowns up to which KLU, which keeps its pivots, is faster than DirectSolver.
+constexpr int kDenseUnknowns = 400;
 /// Scaled mass (largest 1) below which a motion that the constraints allow counts as a motion
 /// without mass. Masses of elements and bodies are far above this limit; round-off of zero masses
 /// is below it.
 constexpr double kNoMass = 1e-12;
 
 /// Returns the index of an entry in the values of a compressed matrix.
-int place(const SparseMatrix& a, int row, int column) {
+int value_index(const SparseMatrix& a, int row, int column) {
   const int* first = a.innerIndexPtr() + a.outerIndexPtr()[column];
   const int* last = a.innerIndexPtr() + a.outerIndexPtr()[column + 1];
   return static_cast<int>(std::lower_bound(first, last, row) - a.innerIndexPtr());
@@ -51,14 +51,14 @@ void AccelerationSolver::number(const State& x, const Constraints& c) {
   for (int column = 0, k = 0; column < kkt_.cols(); ++column)
     for (SparseMatrix::InnerIterator it(kkt_, column); it; ++it)
       weights_[k++] = scale_[it.row()] * scale_[column];
-  places_.clear();
+  value_indices_.clear();
   for (const auto& entry : c.jacobian) {
-    places_.push_back(place(kkt_, n + entry.row(), entry.col()));
-    places_.push_back(place(kkt_, entry.col(), n + entry.row()));
+    value_indices_.push_back(value_index(kkt_, n + entry.row(), entry.col()));
+    value_indices_.push_back(value_index(kkt_, entry.col(), n + entry.row()));
   }
   kkt_.coeffs() *= weights_.array();
   mass_moves_ = any_moves(model_);
-  is_small_ = n + m <= kSmall;
+  is_small_ = n + m <= kDenseUnknowns;
   is_factored_ = false;
   factored_.setZero(static_cast<Eigen::Index>(c.jacobian.size()));
   right_.resize(n + m);
@@ -79,7 +79,7 @@ void AccelerationSolver::require_mass() const {
   SparseMatrix shifted = kkt_;
   for (int i = 0; i < n; ++i) shifted.coeffRef(i, i) += 0.01 * kNoMass;
   shifted.makeCompressed();
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   solver.analyze(shifted);
   solver.factorize(shifted);
   VectorXd z(kkt_.rows()), right = VectorXd::Zero(kkt_.rows());
@@ -98,8 +98,9 @@ void AccelerationSolver::require_mass() const {
     if (b.n_dofs() > 0 && z.segment(b.first_dof, b.n_dofs()).lpNorm<Eigen::Infinity>() > 0.1 * most)
       bodies += (bodies.empty() ? "'" : ", '") + b.name + "'";
   throw Error::input(
-      "minimal_coordinates: nothing holds unknowns without mass, of " + bodies +
-      ": accelerations do not exist. Give the body a mass, hold it, or use another integrator.");
+      "minimal_coordinates: accelerations do not exist, because degrees of freedom without mass "
+      "are not fixed; they belong to " +
+      bodies + ". Give the body a mass, fix it, or use another integrator.");
 }
 
 void AccelerationSolver::factorize(const State& x, const Constraints& c) {
@@ -115,10 +116,10 @@ void AccelerationSolver::factorize(const State& x, const Constraints& c) {
     changed = changed || c.jacobian[k].value() != factored_[static_cast<Eigen::Index>(k)];
   if (is_factored_ && !changed) return;
   double* values = kkt_.valuePtr();
-  for (const int at : places_) values[at] = 0;
+  for (const int at : value_indices_) values[at] = 0;
   for (size_t k = 0; k < c.jacobian.size(); ++k) {
     factored_[static_cast<Eigen::Index>(k)] = c.jacobian[k].value();
-    for (const int at : {places_[2 * k], places_[2 * k + 1]})
+    for (const int at : {value_indices_[2 * k], value_indices_[2 * k + 1]})
       values[at] += weights_[at] * c.jacobian[k].value();
   }
   is_factored_ = false;
@@ -130,15 +131,15 @@ void AccelerationSolver::factorize(const State& x, const Constraints& c) {
   ++factorizations_;
 }
 
-void AccelerationSolver::remember(Memory& memory) {
-  memory(factorizations_, mass_moves_, is_factored_, is_small_, kkt_, scale_, weights_, places_,
-         factored_);
+void AccelerationSolver::archive(Archive& memory) {
+  memory(factorizations_, mass_moves_, is_factored_, is_small_, kkt_, scale_, weights_,
+         value_indices_, factored_);
   right_.resize(scale_.size());
   if (!memory.up_to_date(version_, model_.pattern_version())) return;
   if (is_small_)
-    small_.remember(memory, kkt_);
+    small_.archive(memory, kkt_);
   else
-    large_.remember(memory, kkt_);
+    large_.archive(memory, kkt_);
 }
 
 std::optional<double> AccelerationSolver::condition() const {

@@ -36,8 +36,8 @@ class AccelerationSolver {
   void solve(const VectorXd& force, const VectorXd& constraint, VectorXd& a, VectorXd& lambda);
   /// Returns the number of factorizations so far.
   int factorizations() const { return factorizations_; }
-  /// Saves or restores the state of the solver (geometry/memory.h).
-  void remember(Memory& memory);
+  /// Saves or restores the state of the solver (geometry/archive.h).
+  void archive(Archive& memory);
   /// Returns condition_estimate() of the matrix of the last factorize(); nothing before the first
   /// one.
   std::optional<double> condition() const;
@@ -49,13 +49,13 @@ class AccelerationSolver {
   Workspace& model_;
   int version_ = -1;  // pattern version of the model
   bool mass_moves_ = false, is_factored_ = false, is_small_ = true;
-  SparseMatrix kkt_;         // scaled matrix
-  VectorXd scale_;           // scales of rows and columns (n + m)
-  VectorXd weights_;         // scale of row times scale of column, for every entry
-  std::vector<int> places_;  // indices of the triplets of Φ_q, below and above the diagonal
-  VectorXd factored_;        // values of the triplets at the last factorization
+  SparseMatrix kkt_;                // scaled matrix
+  VectorXd scale_;                  // scales of rows and columns (n + m)
+  VectorXd weights_;                // scale of row times scale of column, for every entry
+  std::vector<int> value_indices_;  // indices of the triplets of Φ_q, below and above the diagonal
+  VectorXd factored_;               // values of the triplets at the last factorization
   KluSolver small_;
-  UnsymmetricSolver large_;
+  DirectSolver large_;
   VectorXd right_, solution_;
   int factorizations_ = 0;
 };

@@ -77,16 +77,16 @@ void CoordinatePartition::number(const Model& model, const Constraints& c) {
   matrix_.resize(m, m);
   matrix_.setFromTriplets(entries.begin(), entries.end());
   matrix_.makeCompressed();
-  places_.clear();
+  value_indices_.clear();
   weights_.clear();
   for (const auto& entry : c.jacobian) {
     const int column = column_of[static_cast<size_t>(entry.col())];
-    places_.push_back(-1);
+    value_indices_.push_back(-1);
     weights_.push_back(0);
     if (column < 0) continue;
     const int* first = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
     const int* last = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
-    places_.back() =
+    value_indices_.back() =
         static_cast<int>(std::lower_bound(first, last, entry.row()) - matrix_.innerIndexPtr());
     weights_.back() = row_scale_[entry.row()] * column_scale_[column];
   }
@@ -99,8 +99,8 @@ void CoordinatePartition::factorize(const Constraints& c) {
   double* values = matrix_.valuePtr();
   Eigen::Map<VectorXd> all(values, matrix_.nonZeros());
   all.setZero();
-  for (size_t k = 0; k < places_.size(); ++k)
-    if (places_[k] >= 0) values[places_[k]] += weights_[k] * c.jacobian[k].value();
+  for (size_t k = 0; k < value_indices_.size(); ++k)
+    if (value_indices_[k] >= 0) values[value_indices_[k]] += weights_[k] * c.jacobian[k].value();
   if (is_factored_ && all == factored_) return;
   is_factored_ = false;
   lu_.factorize(matrix_);
@@ -108,10 +108,10 @@ void CoordinatePartition::factorize(const Constraints& c) {
   is_factored_ = true;
 }
 
-void CoordinatePartition::remember(Memory& memory) {
-  memory(independent_, dependent_, places_, weights_, row_scale_, column_scale_, matrix_, factored_,
-         is_factored_);
-  lu_.remember(memory, matrix_);
+void CoordinatePartition::archive(Archive& memory) {
+  memory(independent_, dependent_, value_indices_, weights_, row_scale_, column_scale_, matrix_,
+         factored_, is_factored_);
+  lu_.archive(memory, matrix_);
 }
 
 void CoordinatePartition::solve(const VectorXd& right, VectorXd& out) const {

@@ -38,15 +38,15 @@ class CoordinatePartition {
   /// independent unknowns are amplified by about this factor in dependent ones. It is 1 at best,
   /// and infinite where independent unknowns reach a limit of their motion.
   double amplification() const;
-  /// Saves or restores the partition and its factorization (geometry/memory.h).
-  void remember(Memory& memory);
+  /// Saves or restores the partition and its factorization (geometry/archive.h).
+  void archive(Archive& memory);
 
  private:
   void number(const Model& model, const Constraints& c);
 
   std::vector<int> independent_, dependent_;
-  std::vector<int> places_;      // index of each triplet of Φ_q in the matrix; -1: independent
-  std::vector<double> weights_;  // scale of each triplet
+  std::vector<int> value_indices_;  // index of each triplet of Φ_q in the matrix; -1: independent
+  std::vector<double> weights_;     // scale of each triplet
   VectorXd row_scale_, column_scale_;
   SparseMatrix matrix_;
   VectorXd factored_;  // values of the matrix at the last factorization

@@ -61,7 +61,7 @@ void DenseOutput::solve(const VectorXd& constraint) {
 /// Chord iteration with one factorization, because the error of the quintic is small.
 void DenseOutput::project_position(State& x) {
   const double size = model_size(scales_, x.q);
-  constexpr int kMost = 12;
+  constexpr int kMaxIterations = 12;
   constexpr double kOnto = 1e-13, kRoundOff = 1e-10;
   force_.setZero(model_.n_dofs());
   double last = 0;
@@ -75,17 +75,17 @@ void DenseOutput::project_position(State& x) {
     const double moved = move.cwiseProduct(scales_).lpNorm<Eigen::Infinity>() / size;
     if (moved <= kOnto || (pass > 2 && moved < kRoundOff && moved > 0.5 * last)) return;
     last = moved;
-    if (pass < kMost && std::isfinite(moved)) continue;
+    if (pass < kMaxIterations && std::isfinite(moved)) continue;
     throw Error::numerical(
-        formatted("dense output: the state at t = %.6g s does not reach its constraints: it moves "
-                  "by %.1e of the model's size",
+        formatted("dense output: the constraints at t = %.6g s are not met: the last correction is "
+                  "%.1e of the size of the model",
                   x.t, moved));
   }
 }
 
-void DenseOutput::remember(Memory& memory) {
+void DenseOutput::archive(Archive& memory) {
   memory(scales_, kkt_);
-  if (memory.up_to_date(version_, model_.pattern_version())) solver_.remember(memory, kkt_);
+  if (memory.up_to_date(version_, model_.pattern_version())) solver_.archive(memory, kkt_);
 }
 
 void DenseOutput::at(double t, State& out) {

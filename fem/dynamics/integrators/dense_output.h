@@ -29,8 +29,8 @@ class DenseOutput {
   /// Computes the state at a time within the step.
   /// @throws Error (numerical) if the projection does not converge.
   void at(double t, State& out);
-  /// Saves or restores the matrix and its factorization (geometry/memory.h).
-  void remember(Memory& memory);
+  /// Saves or restores the matrix and its factorization (geometry/archive.h).
+  void archive(Archive& memory);
 
  private:
   void interpolate(double t, State& out) const;
@@ -42,7 +42,7 @@ class DenseOutput {
   Workspace& model_;
   const State* start_ = nullptr;
   const State* end_ = nullptr;
-  UnsymmetricSolver solver_;
+  DirectSolver solver_;
   SparseMatrix kkt_;
   int version_ = -1;  // pattern version of the model
   VectorXd scales_;

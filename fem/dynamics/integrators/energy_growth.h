@@ -29,8 +29,8 @@ class EnergyGrowth {
   /// @param round_off  Energy below which differences are round-off [J].
   void begin(const Energies& e, double round_off);
   /// Checks the energies e and powers p after a step that ended at time t [s].
-  /// @param defect  EnergyBalance::defect() [J].
-  void see(double t, const Energies& e, const Powers& p, double defect);
+  /// @param energy_error  EnergyBalance::energy_error() [J].
+  void see(double t, const Energies& e, const Powers& p, double energy_error);
 
   /// Returns true after begin() until power enters the motion.
   bool is_watched() const { return watched_; }

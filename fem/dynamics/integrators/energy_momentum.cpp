@@ -4,7 +4,7 @@ namespace flexmorph::fem {
 
 EnergyMomentum::EnergyMomentum(Workspace& model, const EnergyMomentumSettings& settings)
     : StepSolver(model, settings, "energy_momentum",
-                 "Nothing is damped here: a smaller time.step often helps, or integrator = "
+                 "This integrator has no numerical damping. Reduce time.step, or set integrator = "
                  "\"generalized_alpha\".") {}
 
 void EnergyMomentum::begin(const State& x, double h) {

@@ -15,7 +15,7 @@ constexpr double kSmooth = 1.2;
 }  // namespace
 
 AlphaScheme::AlphaScheme(double rho) {
-  if (!(rho >= 0 && rho <= 1)) throw Error::input("generalized_alpha: rho_inf lies in [0, 1]");
+  if (!(rho >= 0 && rho <= 1)) throw Error::input("generalized_alpha: rho_inf must lie in [0, 1]");
   alpha_m = (2 * rho - 1) / (rho + 1);
   alpha_f = rho / (rho + 1);
   gamma = 0.5 + alpha_f - alpha_m;
@@ -23,8 +23,7 @@ AlphaScheme::AlphaScheme(double rho) {
 }
 
 GeneralizedAlpha::GeneralizedAlpha(Workspace& model, const AlphaSettings& settings)
-    : StepSolver(model, settings, "generalized_alpha",
-                 "A smaller time.step or a smaller rho_inf often helps."),
+    : StepSolver(model, settings, "generalized_alpha", "Reduce time.step or rho_inf."),
       scheme_(settings.rho_inf) {}
 
 void GeneralizedAlpha::begin(const State& x, double h) {
@@ -81,7 +80,7 @@ void GeneralizedAlpha::begin_motion(const State& x, double h) {
   }
 }
 
-void GeneralizedAlpha::cross_kink(State& x) {
+void GeneralizedAlpha::cross_discontinuity(State& x) {
   change_ = alpha_ - x.a;
   make_consistent(x);
   alpha_ += change_;
@@ -94,8 +93,8 @@ void GeneralizedAlpha::change_mesh(const MeshMap& map, const State& before,
     alpha_ = map.acceleration(before.q, before.v, alpha_) + change;
 }
 
-void GeneralizedAlpha::remember(Memory& memory) {
-  StepSolver::remember(memory);
+void GeneralizedAlpha::archive(Archive& memory) {
+  StepSolver::archive(memory);
   memory(alpha_, last_h_, jerk_, step_jerk_, smooth_);
   memory.up_to_date(jerk_version_, model().pattern_version());
 }

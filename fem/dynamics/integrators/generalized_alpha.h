@@ -95,9 +95,9 @@ class GeneralizedAlpha final : public StepSolver {
   void set_alpha(VectorXd alpha) { alpha_ = std::move(alpha); }
   /// Keeps the difference between algorithmic and true acceleration, because the algorithmic one
   /// belongs to t + δ h.
-  void cross_kink(State& x) override;
+  void cross_discontinuity(State& x) override;
   void change_mesh(const MeshMap& map, const State& before, const VectorXd& change) override;
-  void remember(Memory& memory) override;
+  void archive(Archive& memory) override;
   /// Returns C: the local error of the position is -C h³ q⃛.
   double error_constant() const { return 1.0 / 6 - scheme_.beta - 0.5 * shift(); }
 

@@ -10,7 +10,7 @@
 
 namespace flexmorph::fem {
 
-void remember(Memory& memory, State& x) { memory(x.t, x.q, x.v, x.a, x.lambda, x.turned); }
+void archive(Archive& memory, State& x) { memory(x.t, x.q, x.v, x.a, x.lambda, x.turned); }
 
 namespace {
 
@@ -37,7 +37,8 @@ const std::map<std::string, Maker>& table() {
 
 TriedStep Integrator::try_step(State&, double, double) {
   throw Error::input(
-      "adaptive steps need \"generalized_alpha\": this integrator does not tell its local error");
+      "adaptive steps need integrator \"generalized_alpha\", because this integrator does not "
+      "estimate its local error");
 }
 
 double Integrator::first_step(const State&, double, double longest) { return longest; }
@@ -45,8 +46,9 @@ double Integrator::first_step(const State&, double, double longest) { return lon
 std::unique_ptr<Integrator> make_integrator(Workspace& model, const IntegratorSettings& settings) {
   const auto row = table().find(settings.name);
   if (row == table().end())
-    throw Error::input("integrator '" + settings.name +
-                       "' is unknown; known are: " + joined(std::views::keys(table())));
+    throw Error::input(
+        "integrator '" + settings.name +
+        "' is unknown; the available integrators are: " + joined(std::views::keys(table())));
   return row->second(model, settings);
 }
 

@@ -7,7 +7,7 @@
 
 #include "fem/dynamics/mesh_changes/mesh_map.h"
 #include "fem/model/workspace.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 
 namespace flexmorph::fem {
 
@@ -66,8 +66,8 @@ struct StepCounts {
   int partitions = 0;
 };
 
-/// Saves or restores the state of a model (geometry/memory.h).
-void remember(Memory& memory, State& x);
+/// Saves or restores the state of a model (geometry/archive.h).
+void archive(Archive& memory, State& x);
 
 /// Outcome of a step of Integrator::try_step().
 struct TriedStep {
@@ -92,7 +92,7 @@ class Integrator {
   /// Prepares the first step of a motion with steps of about h that are not adaptive, such that the
   /// multipliers follow a smooth solution from this step on.
   /// @param x  State after make_consistent().
-  virtual void begin_motion(const State& /*x*/, double /*h*/) {}
+  virtual void begin_motion([[maybe_unused]] const State& x, [[maybe_unused]] double h) {}
   /// Projects velocities that violate Φ_q q̇ + Φ_t = 0 slightly onto the constraints, with the
   /// smallest change in the mass norm.
   virtual void project_velocity(State& x) = 0;
@@ -100,14 +100,15 @@ class Integrator {
   /// Continues after a discontinuity of drives or loads: the last step ended just before it, and
   /// x.t is now its time. Accelerations and multipliers jump to the values after the discontinuity,
   /// and the variables of the scheme besides the state jump with them.
-  virtual void cross_kink(State& x) { make_consistent(x); }
+  virtual void cross_discontinuity(State& x) { make_consistent(x); }
 
   /// Transfers the variables of the scheme besides the state across a change of the mesh, after
   /// `map` and balance_forces() have transferred the state.
   /// @param before  State before the change.
   /// @param change  Change of the accelerations by balance_forces() (n_dofs).
-  virtual void change_mesh(const MeshMap& /*map*/, const State& /*before*/,
-                           const VectorXd& /*change*/) {}
+  virtual void change_mesh([[maybe_unused]] const MeshMap& map,
+                           [[maybe_unused]] const State& before,
+                           [[maybe_unused]] const VectorXd& change) {}
 
   /// Advances x to t_end: in one step, which is halved and repeated if Newton's method fails and
   /// grows again later, or in as many steps as the tolerance of the integrator requires.
@@ -137,7 +138,7 @@ class Integrator {
   /// Saves or restores, between two steps, the data besides the state on which the next steps
   /// depend. If they are restored into an integrator with the same settings and model (and mesh),
   /// the next steps are bit for bit the same.
-  virtual void remember(Memory& memory) = 0;
+  virtual void archive(Archive& memory) = 0;
   /// Returns condition_estimate() of the matrix that was factored last; nothing if there is none.
   /// Costs a factorization.
   virtual std::optional<double> condition() const = 0;

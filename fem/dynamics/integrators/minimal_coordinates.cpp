@@ -21,7 +21,7 @@ using DormandPrince = odeint::runge_kutta_dopri5<Numbers>;
 /// Relative correction of dependent positions after which only round-off remains, because Newton's
 /// method converges quadratically.
 constexpr double kConverged = 1e-10;
-constexpr int kMostIterations = 10;
+constexpr int kMaxIterations = 10;
 /// Largest allowed correction of a prediction, relative to the predicted motion or to half the size
 /// of the model if that is larger. A larger correction may lead to another branch of the
 /// constraints.
@@ -164,7 +164,7 @@ void MinimalCoordinates::Impl::find_positions(double motion) {
   const std::vector<int>& dependent = partition.dependent();
   const double most = kCorrection * std::max(motion, 0.5 * size);
   double before = 0;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     model.constraints(at, constraints);
     partition.factorize(constraints);
     if (iteration > 0 && before <= kConverged * size) return;
@@ -178,7 +178,8 @@ void MinimalCoordinates::Impl::find_positions(double motion) {
       at.q[dependent[k]] += correction[static_cast<Eigen::Index>(k)];
     before = now;
   }
-  throw Error::numerical(formatted("the dependent positions were not found at t = %.9g s", at.t));
+  throw Error::numerical(
+      formatted("the dependent coordinates could not be computed at t = %.9g s", at.t));
 }
 
 /// Solves Φ_q q̇ = -Φ_t for the dependent velocities of `at`.
@@ -240,7 +241,7 @@ bool MinimalCoordinates::Impl::try_step(const State& x, double& h, std::string& 
     if (stepper.try_step(system, y, rate, t, h) == odeint::fail) return false;
     amplification = partition.amplification();
     if (amplification <= kAmbiguous * best_amplification) return true;
-    throw Error::numerical("the independent coordinates are at their limits");
+    throw Error::numerical("the independent coordinates no longer determine the others");
   } catch (const Error& error) {
     if (error.kind() != Error::Kind::numerical) throw;
     reason = error.what();
@@ -282,18 +283,19 @@ double MinimalCoordinates::Impl::fastest_vibration(const State& x) {
 }
 
 void MinimalCoordinates::Impl::give_up(const State& x, double h, const std::string& reason) {
-  std::string message = formatted("minimal_coordinates: at t = %.9g s, step %d, step size %.3g s ",
-                                  x.t, counts.steps + 1, h);
-  if (!reason.empty()) throw Error::numerical(message + "is too small to go on: " + reason);
+  std::string message =
+      formatted("minimal_coordinates: at t = %.9g s, step %d, the step size %.3g s ", x.t,
+                counts.steps + 1, h);
+  if (!reason.empty()) throw Error::numerical(message + "is too small to continue: " + reason);
   const double omega = fastest_vibration(x);
   if (h * omega > 0.1)
     throw Error::numerical(
-        message + formatted("is limited by stability: the model is stiff, its fastest vibration of "
-                            "%.2g rad/s allows explicit steps of %.2g s. integrator = "
-                            "\"generalized_alpha\" is not bound by it.",
+        message + formatted("is limited by stability. The model is stiff: its largest angular "
+                            "frequency of %.2g rad/s allows explicit steps of %.2g s. Set "
+                            "integrator = \"generalized_alpha\", which does not have this limit.",
                             omega, 1 / omega));
   throw Error::numerical(message +
-                         "is too small to go on: does a drive or a load jump there? A larger "
+                         "is too small to continue. A drive or a load may jump there. A larger "
                          "time.tolerance may help.");
 }
 
@@ -301,12 +303,13 @@ MinimalCoordinates::MinimalCoordinates(Workspace& model, const MinimalCoordinate
     : impl_(std::make_unique<Impl>(model, settings)) {
   if (!(settings.tolerance >= 1e-13 && settings.tolerance < 1) || settings.max_steps < 1)
     throw Error::input(
-        "minimal_coordinates: tolerance lies in [1e-13, 1), and max_steps is positive");
+        "minimal_coordinates: the tolerance must lie in [1e-13, 1), and max_steps must be "
+        "positive");
   for (const Body& b : model.bodies())
     if (b.element->n_scalars() > 0)
       throw Error::input("minimal_coordinates: body '" + b.name +
-                         "' has free material lines, which carry no inertia of their own: they "
-                         "need \"generalized_alpha\"");
+                         "' has free material lines, which have no inertia of their own; use "
+                         "integrator \"generalized_alpha\"");
 }
 
 MinimalCoordinates::~MinimalCoordinates() = default;
@@ -316,13 +319,13 @@ std::optional<double> MinimalCoordinates::condition() const {
   return impl_->accelerations.condition();
 }
 
-void MinimalCoordinates::remember(Memory& memory) {
+void MinimalCoordinates::archive(Archive& memory) {
   Impl& s = *impl_;
   memory(s.counts, s.scales, s.size, s.amplification, s.best_amplification, s.y, s.rate, s.is_begun,
          s.independent_scales, s.step, s.last, s.partition);
   memory.up_to_date(s.version, s.model.pattern_version());
-  s.accelerations.remember(memory);
-  if (!memory.puts_back()) return;
+  s.accelerations.archive(memory);
+  if (!memory.is_restoring()) return;
   s.at = s.last;
   s.stepper = s.make_stepper();
 }

@@ -44,7 +44,7 @@ class MinimalCoordinates final : public Integrator {
   void advance(State& x, double t_end, const std::function<void(const State&)>& accepted) override;
   const StepCounts& counts() const override;
   std::optional<double> condition() const override;
-  void remember(Memory& memory) override;
+  void archive(Archive& memory) override;
 
  private:
   struct Impl;

@@ -32,26 +32,27 @@ StepControl::StepControl(const AdaptiveStep& settings, double span)
   if (!(settings.tolerance > 0 && settings.tolerance < 1) || !(span > 0) ||
       !(settings.largest >= 0 && settings.smallest >= 0 && settings.first >= 0))
     throw Error::input(
-        "adaptive step: the tolerance lies between 0 and 1, step sizes are not negative");
+        "adaptive step: the tolerance must lie between 0 and 1, and step sizes must not be "
+        "negative");
   if (smallest_ > largest_)
     throw Error::input("adaptive step: the smallest step is longer than the largest");
 }
 
 void StepControl::begin(double h) {
-  wish_ = std::clamp(h, smallest_, largest_);
+  request_ = std::clamp(h, smallest_, largest_);
   last_ = 0;
 }
 
 double StepControl::next(double left) const {
-  if (left <= 1.001 * wish_) return left;
-  return left < 2 * wish_ ? 0.5 * left : wish_;
+  if (left <= 1.001 * request_) return left;
+  return left < 2 * request_ ? 0.5 * left : request_;
 }
 
 void StepControl::accepted(double h, double error, int iterations) {
   double ratio = std::max(error / allowed_, 1e-6);
-  if (h < (1 - 1e-9) * wish_) {
-    // The step was shortened to end at an event time: it only shows whether wish_ is too long.
-    wish_ = std::min(wish_, kSafety * h * std::pow(ratio, -1.0 / 3));
+  if (h < (1 - 1e-9) * request_) {
+    // The step was shortened to end at an event time: it only shows whether request_ is too long.
+    request_ = std::min(request_, kSafety * h * std::pow(ratio, -1.0 / 3));
     shrunk_ = false;
     return;
   }
@@ -66,24 +67,24 @@ void StepControl::accepted(double h, double error, int iterations) {
   // Predicted error of the next step, for the proportional term.
   const double next = std::clamp(h * change, smallest_, largest_);
   last_ = ratio * std::pow(next / h, 3);
-  wish_ = next;
+  request_ = next;
   shrunk_ = false;
 }
 
 void StepControl::shorten(double h, double t, const char* why) {
   shrunk_ = true;
   last_ = 0;
-  wish_ = h;
+  request_ = h;
   if (h >= smallest_) return;
-  throw Error::numerical(
-      formatted("adaptive step: at t = %.6g s %s: the next step would be %.2e s long", t, why, h));
+  throw Error::numerical(formatted(
+      "adaptive step: at t = %.6g s %s; the next step of %.2e s would be too short", t, why, h));
 }
 
 void StepControl::rejected(double h, double error, double t) {
   const double change = 0.9 * std::pow(error / allowed_, -1.0 / 3);
   // The step also shrinks if the error is not a number.
   shorten(h * (change > kShrink ? std::min(change, 0.85) : kShrink), t,
-          "the local error does not get below what the tolerance allows");
+          "the local error remains larger than allowed by the tolerance");
 }
 
 void StepControl::failed(double h, double t) {

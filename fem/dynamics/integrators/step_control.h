@@ -57,7 +57,7 @@ class StepControl {
   void shorten(double h, double t, const char* why);
 
   double allowed_, largest_, smallest_;
-  double wish_ = 0;      // next step if no event time is near
+  double request_ = 0;   // next step if no event time is near
   double last_ = 0;      // local error of the last step, relative to allowed_; 0: unknown
   bool shrunk_ = false;  // true if the last try was rejected
   double failed_ = 0;    // size of the last step in which Newton's method failed; 0: none

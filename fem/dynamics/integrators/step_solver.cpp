@@ -13,7 +13,7 @@ namespace {
 
 // Ratio of error and allowed error below which slow contraction does not prevent a growth of the
 // step.
-constexpr double kFar = 0.1;
+constexpr double kMaxChange = 0.1;
 
 }  // namespace
 
@@ -21,8 +21,9 @@ StepSolver::StepSolver(Workspace& model, const StepSettings& settings, std::stri
                        std::string advice)
     : model_(model), settings_(settings), name_(std::move(name)), advice_(std::move(advice)) {
   if (!(settings.tolerance > 0) || settings.max_iterations < 1 || settings.max_halvings < 0)
-    throw Error::input(name_ +
-                       ": tolerance and max_iterations are positive, max_halvings is not negative");
+    throw Error::input(
+        name_ +
+        ": tolerance and max_iterations must be positive, and max_halvings must not be negative");
 }
 
 void StepSolver::set_scales() {
@@ -64,9 +65,9 @@ std::optional<double> StepSolver::condition() const {
 
 void StepSolver::factorize_here(double h) {
   // A tenth of the contraction that Newton's method accepts for a kept tangent.
-  constexpr double kMiss = 0.02;
+  constexpr double kFactorError = 0.02;
   tangent(kkt_);
-  factorize(kMiss);
+  factorize(kFactorError);
   factored_h_ = h;
   if (!solver_.border().empty()) turns_.begin(model_, iterate());
 }
@@ -143,7 +144,7 @@ TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
                     counts_.newton - before};
       // If the error is this small, slow contraction of a kept tangent must not keep the step
       // small.
-      if (out.error < kFar * allowed) out.iterations = fresh_iterations_;
+      if (out.error < kMaxChange * allowed) out.iterations = fresh_iterations_;
       // Written so that an error that is not a number counts as too large.
       if (!(out.error <= allowed)) return out;
       if (finish_sound(x)) return out;
@@ -157,8 +158,9 @@ TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
 }
 
 bool StepSolver::finish_sound(State& x) {
-  constexpr double kLarge = 1e-3;  // a tenth of an element length, with 100 elements along a body
-  const bool look = largest_correction_ > kLarge;
+  constexpr double kLargeCorrection =
+      1e-3;  // a tenth of an element length, with 100 elements along a body
+  const bool look = largest_correction_ > kLargeCorrection;
   if (look) before_ = x;
   finish(x);
   model_.follow_turns(x);
@@ -166,13 +168,13 @@ bool StepSolver::finish_sound(State& x) {
     keep();
     return true;
   }
-  history_ += "converged with material turned inside out";
+  history_ += "converged to a state with inverted material";
   x = before_;
   return false;
 }
 
 double StepSolver::local_error(const State&, double) {
-  throw Error::input(name_ + " does not estimate its local error: its steps cannot adapt to it");
+  throw Error::input(name_ + " does not estimate its local error, which adaptive steps need");
 }
 
 TriedStep StepSolver::try_step(State& x, double h, double allowed) {
@@ -238,20 +240,20 @@ bool StepSolver::newton(double h) {
 
 void StepSolver::give_up(const State& x, double h, int failures) const {
   const std::string text = formatted(
-      ": no convergence at t = %.6g s, step %d, step size %.2e s after %d halvings, "
-      "smallest area ratio %.2e (",
+      ": Newton's method does not converge at t = %.6g s, step %d, with step size %.2e s after %d "
+      "halvings; the smallest area ratio is %.2e (iterations ",
       x.t, counts_.steps + 1, h, failures - 1, model_.smallest_area_ratio(x));
   throw Error::numerical(name_ + text + history_ + "). " + advice_ +
                          " An area ratio near zero means that the material has collapsed.");
 }
 
-void StepSolver::remember(Memory& memory) {
+void StepSolver::archive(Archive& memory) {
   const int now = model_.pattern_version();
   // The scales belong to earlier positions of the material lines, and the kept tangent to an
   // earlier step. Therefore they cannot be computed again and are saved.
   memory(counts_, scales_, size_, kkt_, factored_h_, failures_, turns_);
   memory.up_to_date(scaled_version_, now);
-  if (memory.up_to_date(analysed_version_, now)) solver_.remember(memory, kkt_);
+  if (memory.up_to_date(analysed_version_, now)) solver_.archive(memory, kkt_);
 }
 
 void StepSolver::advance(State& x, double t_end,

@@ -21,7 +21,7 @@ class StepSolver : public Integrator {
   TriedStep try_step(State& x, double h, double allowed) final;
   const StepCounts& counts() const final { return counts_; }
   std::optional<double> condition() const final;
-  void remember(Memory& memory) override;
+  void archive(Archive& memory) override;
 
  protected:
   /// Creates the solver for a model, which must outlive it.
@@ -117,14 +117,14 @@ class StepSolver : public Integrator {
   [[noreturn]] void give_up(const State& x, double h, int failures) const;
   /// Solves [M Φ_qᵀ; Φ_q 0] solution_ = (force, constraint) at x; solution_ stays scaled.
   void solve_mass(const State& x, const VectorXd& force, const VectorXd& constraint);
-  /// Factors kkt_ after scaling it, see UnsymmetricSolver::factorize() for `miss`.
+  /// Factors kkt_ after scaling it, see DirectSolver::factorize() for `miss`.
   void factorize(double miss);
 
   Workspace& model_;
   StepSettings settings_;
   std::string name_, advice_;
   StepCounts counts_;
-  UnsymmetricSolver solver_;
+  DirectSolver solver_;
   SparseMatrix kkt_;
   int analysed_version_ = -1;
   double largest_correction_ = 0;  // in the last newton(), relative to size_

@@ -7,9 +7,9 @@
 
 namespace flexmorph::fem {
 
-void remember(Memory& memory, Alternation& a) { memory(a.time, a.joint, a.part); }
+void archive(Archive& memory, Alternation& a) { memory(a.time, a.joint, a.part); }
 
-void MultiplierWatch::remember(Memory& memory, const Model& model) {
+void MultiplierWatch::archive(Archive& memory, const Model& model) {
   memory(steps_, h_, last_, before_, difference_, largest_, in_a_row_, found_);
   memory.up_to_date(version_, model.pattern_version());
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/model/model.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 
 namespace flexmorph::fem {
 
@@ -16,8 +16,8 @@ struct Alternation {
   double part = 0;    ///< Largest amplitude, relative to the largest multiplier of the row.
 };
 
-/// Saves or restores the record of an alternation (geometry/memory.h).
-void remember(Memory& memory, Alternation& alternation);
+/// Saves or restores the record of an alternation (geometry/archive.h).
+void archive(Archive& memory, Alternation& alternation);
 
 /// Check for alternating multipliers. In index-3 equations the algorithmic component of λ obeys
 /// λ_{n+1} = -ρ_∞ λ_n + ...: for ρ_∞ = 1 a disturbance by a step or a drive is never damped. It
@@ -39,8 +39,8 @@ class MultiplierWatch {
   void see(const Model& model, const State& x, double h);
   /// Returns the strongest alternation so far, if any.
   const std::optional<Alternation>& found() const { return found_; }
-  /// Saves or restores the state of the check (geometry/memory.h).
-  void remember(Memory& memory, const Model& model);
+  /// Saves or restores the state of the check (geometry/archive.h).
+  void archive(Archive& memory, const Model& model);
 
  private:
   void begin(const Model& model, const State& x, double h);

@@ -9,7 +9,7 @@ namespace {
 
 const LineGrid& lines_of(const Body& body) {
   const auto* lines = dynamic_cast<const LineGrid*>(body.element.get());
-  if (!lines) throw Error::input("body '" + body.name + "' has no material lines to move");
+  if (!lines) throw Error::input("body '" + body.name + "' has no material lines that can move");
   return *lines;
 }
 
@@ -104,7 +104,7 @@ void MeshMap::add_transposed(const Node& node, const MatrixXd& fresh, size_t rat
     }
 }
 
-VectorXd MeshMap::place(const VectorXd& all, const std::vector<MatrixXd>& fresh) const {
+VectorXd MeshMap::transfer(const VectorXd& all, const std::vector<MatrixXd>& fresh) const {
   VectorXd out(n_after());
   out.head(at_) = all.head(at_);
   int to = at_;
@@ -140,7 +140,7 @@ MeshMap::Vectors MeshMap::apply(const Vectors& before) const {
     q.push_back(sample(node, of_q, 0));
     v.push_back(sample(node, of_v, 0) + sample(node, of_q, 1));
   }
-  return {place(before.q, q), place(before.v, v), acceleration(before.q, before.v, before.a)};
+  return {transfer(before.q, q), transfer(before.v, v), acceleration(before.q, before.v, before.a)};
 }
 
 VectorXd MeshMap::acceleration(const VectorXd& q, const VectorXd& v, const VectorXd& a) const {
@@ -149,7 +149,7 @@ VectorXd MeshMap::acceleration(const VectorXd& q, const VectorXd& v, const Vecto
     const MatrixXd flow = 2 * sample(node, rows_of(node, v), 1) + sample(node, rows_of(node, q), 2);
     fresh.push_back(sample(node, rows_of(node, a), 0) + flow);
   }
-  return place(a, fresh);
+  return transfer(a, fresh);
 }
 
 MeshMap::Vectors MeshMap::apply_transposed(const Vectors& after) const {

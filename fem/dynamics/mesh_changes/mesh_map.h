@@ -89,7 +89,7 @@ class MeshMap {
   void add_transposed(const Node& node, const MatrixXd& fresh, size_t rates, double factor,
                       VectorXd& out) const;
   /// Returns the vector after the change: remaining entries of `all`, and `fresh` for new nodes.
-  VectorXd place(const VectorXd& all, const std::vector<MatrixXd>& fresh) const;
+  VectorXd transfer(const VectorXd& all, const std::vector<MatrixXd>& fresh) const;
   /// Returns the entries of `after` for the new nodes (4 x dim each; rows beyond per_node_ are
   /// zero).
   std::vector<MatrixXd> taken(const VectorXd& after) const;

@@ -74,6 +74,6 @@ std::vector<TurnedVectors> BodyTurns::turns(const Model& model) const {
   return out;
 }
 
-void BodyTurns::remember(Memory& memory) { memory(start_, now_); }
+void BodyTurns::archive(Archive& memory) { memory(start_, now_); }
 
 }  // namespace flexmorph::fem

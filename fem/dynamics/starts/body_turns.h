@@ -4,7 +4,7 @@
 
 #include "fem/model/model.h"
 #include "fem/solve/turned_vectors.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 
 namespace flexmorph::fem {
 
@@ -25,8 +25,8 @@ class BodyTurns {
   bool follow(const Model& model, const VectorXd& q);
   /// Returns the rotations of all planar bodies from begin() to the last update by follow().
   std::vector<TurnedVectors> turns(const Model& model) const;
-  /// Saves or restores the angles (geometry/memory.h).
-  void remember(Memory& memory);
+  /// Saves or restores the angles (geometry/archive.h).
+  void archive(Archive& memory);
 
  private:
   std::vector<double> start_, now_;  // angles of the bodies at begin() and at the last update [rad]

@@ -101,9 +101,10 @@ std::optional<Error> contradiction(const std::vector<Given>& given, const Diagno
     if (words.empty()) continue;
     return Error::input(
         source + words + ": " +
-        (joints.empty() ? "they contradict each other" : "contradicts " + list_joints(joints)) +
+        (joints.empty() ? "these velocities contradict each other"
+                        : "this contradicts " + list_joints(joints)) +
         " by " + text_of(difference.value_or(group.rate_miss), 3) +
-        " m/s. Velocities that are not given follow from those that are");
+        " m/s. Velocities that are not given are computed from the given velocities");
   }
   return {};
 }

@@ -4,20 +4,21 @@
 #include <cmath>
 #include <vector>
 
-#include "fem/dynamics/starts/carrier.h"
+#include "fem/dynamics/starts/driven_frame.h"
 
 namespace flexmorph::fem {
 
-Vec2 place_on_arc(double curvature, const Vec2& material) {
+Vec2 location_on_arc(double curvature, const Vec2& material) {
   const double turn = curvature * material.x(), half = 0.5 * turn;
   const double chord = material.x() * (turn == 0 ? 1 : std::sin(half) / half);
   return chord * Vec2(std::cos(half), std::sin(half)) +
          material.y() * Vec2(-std::sin(turn), std::cos(turn));
 }
 
-Vec3 ReferencePose::place(const Vec2& material) const {
+Vec3 ReferencePose::location(const Vec2& material) const {
   const Vec2 flat(material.x() - line, material.y());
-  const Vec2 r = origin + rotation(angle) * (curvature == 0 ? flat : place_on_arc(curvature, flat));
+  const Vec2 r =
+      origin + rotation(angle) * (curvature == 0 ? flat : location_on_arc(curvature, flat));
   return {r.x(), r.y(), 0};
 }
 
@@ -46,7 +47,7 @@ std::optional<ReferencePose> known_pose(std::span<const UndeformedBody> bodies,
     const auto other = known_pose(bodies, welds, find_body(bodies, there.body), from);
     if (!other) continue;
     ReferencePose pose{{0, 0}, other->angle + there.angle - here.angle, body.line, body.curvature};
-    pose.origin = (other->place(there.point) - pose.place(here.point)).head<2>();
+    pose.origin = (other->location(there.point) - pose.location(here.point)).head<2>();
     return pose;
   }
   return {};

@@ -20,12 +20,12 @@ struct ReferencePose {
   double curvature = 0;
 
   /// Returns the position of a material point in the world, z = 0 [m].
-  Vec3 place(const Vec2& material) const;
+  Vec3 location(const Vec2& material) const;
 };
 
 /// Returns the position of a material point of a strip in the axes of its root [m]. The strip
 /// begins along the first axis and has a constant curvature [1/m].
-Vec2 place_on_arc(double curvature, const Vec2& material);
+Vec2 location_on_arc(double curvature, const Vec2& material);
 
 /// A plate or beam as input of reference_pose().
 struct UndeformedBody {

@@ -43,25 +43,27 @@ Motion distance_along(const FrameMotion& a, const FrameMotion& b) {
 }
 
 void add_rigid_body(Model& model, const MechanismBody& body, const LoadLaw& gravity,
-                    std::span<const StoredMaterial> stored) {
+                    std::span<const MaterialReservoir> reservoirs) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_rigid_inertia(body.section));
   if (gravity.size() > 0) terms.push_back(make_rigid_gravity(body.section, gravity));
-  for (const StoredMaterial& each : stored) {
-    terms.push_back(make_stored_inertia(each));
-    if (gravity.size() > 0) terms.push_back(make_stored_weight(each, gravity));
+  for (const MaterialReservoir& each : reservoirs) {
+    terms.push_back(make_reservoir_inertia(each));
+    if (gravity.size() > 0) terms.push_back(make_reservoir_weight(each, gravity));
   }
-  model.add_body(body.name, make_rigid_body(body.size, !stored.empty()), {}, std::move(terms));
+  model.add_body(body.name, make_rigid_body(body.size, !reservoirs.empty()), {}, std::move(terms));
   model.add_joint(make_unit_axis("axis of " + body.name, body.name));
 }
 
 RigidKinematics::RigidKinematics(RigidMechanism mechanism) : mechanism_(std::move(mechanism)) {
   for (const MechanismBody& body : mechanism_.bodies)
     add_rigid_body(model_, body, mechanism_.gravity);
-  for (const auto& link : mechanism_.links) model_.add_link(link->clone());
+  for (const auto& force_element : mechanism_.force_elements)
+    model_.add_force_element(force_element->clone());
   for (const MechanismJoint& each : mechanism_.joints) {
     if (!each.joint && each.is_driven)
-      throw Error::input("rigid kinematics: the drive '" + each.drive + "' has no motion");
+      throw Error::input("rigid kinematics: the drive '" + each.drive +
+                         "' has no prescribed motion");
     if (each.joint) model_.add_joint(each.joint->clone());
   }
 }
@@ -89,7 +91,7 @@ Error RigidKinematics::refusal(const Diagnosis& diagnosis) const {
                       }))
         drives.push_back(name);
     if (group.joints.size() > kManyJoints && !drives.empty() && said++ < kMaxLines)
-      words += "\nof them drives: " + list_joints(drives);
+      words += "\nThe drives of this group are: " + list_joints(drives);
   }
   return Error::input(words);
 }
@@ -114,11 +116,12 @@ FrameMotion RigidKinematics::frame(const std::string& body, const State& x) cons
   return frame_of(model_.body(body), x);
 }
 
-FrameMotion RigidKinematics::frame_at(const MarkerPlace& place, const State& x) const {
-  if (!place.body.empty()) return Carrier(place.body, place.point, place.angle).at(model_, x);
+FrameMotion RigidKinematics::frame_at(const MarkerLocation& location, const State& x) const {
+  if (!location.body.empty())
+    return DrivenFrame(location.body, location.point, location.angle).at(model_, x);
   FrameMotion ground;
-  ground.origin = place.point;
-  ground.angle = place.angle;
+  ground.origin = location.point;
+  ground.angle = location.angle;
   return ground;
 }
 
@@ -126,8 +129,9 @@ Motion RigidKinematics::coordinate_of(const std::string& drive, const State& x) 
   for (const MechanismJoint& each : mechanism_.joints)
     if (each.drive == drive && each.coordinate)
       return each.coordinate(frame_at(each.a, x), frame_at(each.b, x));
-  throw Error::input("drive '" + drive +
-                     "' follows from the trajectory, but drives no flow, angle or distance");
+  throw Error::input(
+      "drive '" + drive +
+      "' follows from the trajectory, but it does not drive a flow, an angle or a distance");
 }
 
 RigidMechanism released(RigidMechanism mechanism,

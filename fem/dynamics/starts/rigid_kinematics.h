@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "fem/dynamics/starts/carrier.h"
+#include "fem/dynamics/starts/driven_frame.h"
+#include "fem/material_reservoir.h"
 #include "fem/rigid.h"
 #include "fem/solve/diagnosis.h"
-#include "fem/stored.h"
 
 namespace flexmorph::fem {
 
@@ -67,7 +67,7 @@ struct MechanismJoint {
   /// Coordinate that the drive prescribes; null if none is known.
   JointCoordinate coordinate = nullptr;
   /// Markers between which the coordinate is measured.
-  MarkerPlace a{}, b{};
+  MarkerLocation a{}, b{};
 };
 
 /// A mechanism of rigid bodies, as plain data. Copies share the joints and force elements, which
@@ -78,7 +78,7 @@ struct RigidMechanism {
   /// All joints of the mechanism.
   std::vector<MechanismJoint> joints;
   /// Force elements: springs, and loads on bodies.
-  std::vector<std::shared_ptr<const Link>> links{};
+  std::vector<std::shared_ptr<const ForceElement>> force_elements{};
   /// Acceleration of gravity (2) [m/s²]; of size 0: there is no weight.
   LoadLaw gravity = LoadLaw(VectorXd());
   /// True if some bodies of the mechanism are flexible. Joints may then constrain more than the
@@ -89,10 +89,10 @@ struct RigidMechanism {
 /// Adds a rigid body to a model, with its inertia, the inertia of its material reservoirs, its
 /// weight and the unit length of its axis as a joint.
 /// @param gravity  Acceleration of gravity (2) [m/s²], or of size 0.
-/// @param stored   Material reservoirs of the body.
+/// @param reservoirs   Material reservoirs of the body.
 /// @throws Error (input) as make_rigid_inertia() and the other functions that make its terms.
 void add_rigid_body(Model& model, const MechanismBody& body, const LoadLaw& gravity,
-                    std::span<const StoredMaterial> stored = {});
+                    std::span<const MaterialReservoir> reservoirs = {});
 
 /// The rigid kinematic model of a planar mechanism. It determines the initial state of the
 /// mechanism, its number of degrees of freedom, the loads of its rigid motion (q_R of P (29)), and
@@ -124,8 +124,8 @@ class RigidKinematics {
   /// all positions of the bodies.
   bool assemble(State& x);
   /// Returns the error that names the joints that contradict each other or constrain a degree of
-  /// freedom repeatedly. For many joints it also lists those that prescribe a coordinate, because
-  /// they are the most likely cause.
+  /// freedom repeatedly. For many joints it also lists those that prescribe a coordinate,
+  /// because they are the most likely cause.
   Error refusal(const Diagnosis& diagnosis) const;
 
   /// Returns the motion of the frame of a body at state x; for a plate or beam that of the frame at
@@ -136,7 +136,7 @@ class RigidKinematics {
   Motion coordinate_of(const std::string& drive, const State& x) const;
 
  private:
-  FrameMotion frame_at(const MarkerPlace& place, const State& x) const;
+  FrameMotion frame_at(const MarkerLocation& location, const State& x) const;
 
   RigidMechanism mechanism_;
   Workspace model_;

@@ -12,8 +12,8 @@ RigidMotion::RigidMotion(RigidKinematics kinematics)
   if (indeterminate_ && (!kinematics_.mechanism().bends || diagnosis.misses_positions()))
     throw kinematics_.refusal(diagnosis);
   if (moves) give_initial_velocities(kinematics_, start_);
-  freedoms_ = diagnosis.degrees_of_freedom();
-  if (freedoms_ > 0 || (indeterminate_ && diagnosis.is_contradictory())) return;
+  dofs_ = diagnosis.degrees_of_freedom();
+  if (dofs_ > 0 || (indeterminate_ && diagnosis.is_contradictory())) return;
   driven_ = std::make_unique<Kinematics>(kinematics_.model(), start_);
 }
 
@@ -65,10 +65,10 @@ class Configuration {
   Configuration(const Configuration& other) : kinematics_(other.kinematics_) {}
   Configuration& operator=(const Configuration&) = delete;
 
-  std::vector<Placed> operator()(double t) {
+  std::vector<BodyPose> operator()(double t) {
     if (!motion_) motion_ = std::make_unique<RigidMotion>(kinematics_);
     const State& x = motion_->at(t);
-    std::vector<Placed> out;
+    std::vector<BodyPose> out;
     for (const MechanismBody& b : kinematics_.mechanism().bodies)
       if (b.is_placed) out.push_back({b.name, motion_->kinematics().frame(b.name, x), b.line});
     return out;
@@ -81,7 +81,7 @@ class Configuration {
 
 }  // namespace
 
-Placement rigid_configuration(RigidKinematics kinematics) {
+BodyPoses rigid_configuration(RigidKinematics kinematics) {
   return Configuration(std::move(kinematics));
 }
 

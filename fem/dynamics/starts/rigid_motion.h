@@ -23,7 +23,7 @@ class RigidMotion {
   RigidMotion& operator=(const RigidMotion&) = delete;
 
   /// Returns the number of degrees of freedom of the rigid model at the start.
-  int degrees_of_freedom() const { return freedoms_; }
+  int degrees_of_freedom() const { return dofs_; }
   /// Returns true if joints constrain more than the degrees of freedom of the rigid model.
   bool is_indeterminate() const { return indeterminate_; }
   /// Returns true if drives can move the rigid model to time t; always true unless it is
@@ -51,7 +51,7 @@ class RigidMotion {
 
  private:
   RigidKinematics kinematics_;
-  int freedoms_ = 0;
+  int dofs_ = 0;
   bool indeterminate_ = false;
   State start_;
   std::unique_ptr<Kinematics>
@@ -67,6 +67,6 @@ void require_motion(RigidKinematics kinematics, double end);
 /// hub carries (hub: the rigid frame with prescribed motion that carries a body). Each copy of the
 /// function has its own motion, which begins with its first call; therefore copies may be used at
 /// the same time. The function throws the errors of RigidMotion.
-Placement rigid_configuration(RigidKinematics kinematics);
+BodyPoses rigid_configuration(RigidKinematics kinematics);
 
 }  // namespace flexmorph::fem

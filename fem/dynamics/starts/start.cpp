@@ -71,7 +71,7 @@ void carry_beam(const Body& body, const FrameMotion& frame, double held, State& 
 }
 
 /// Sets an undeformed body in its hub as a rigid, extending body.
-void carry_in_hub(const Model& model, const Growth& growth, State& x) {
+void carry_in_hub(const Model& model, const MovingRoot& growth, State& x) {
   const Body& body = model.body(growth.body);
   const LineGrid& plate = grid_of(body);
   const auto line = static_cast<size_t>(growth.line);
@@ -89,12 +89,12 @@ void carry_in_hub(const Model& model, const Growth& growth, State& x) {
 
 namespace start {
 
-State rigid_state(const Model& model, std::span<const Growth> growths, const Placement& placement,
-                  double t) {
+State rigid_state(const Model& model, std::span<const MovingRoot> moving_roots,
+                  const BodyPoses& body_poses, double t) {
   State x = model.reference();
   x.t = t;
-  if (placement)
-    for (const Placed& p : placement(t)) {
+  if (body_poses)
+    for (const BodyPose& p : body_poses(t)) {
       const Body& body = model.body(p.body);
       if (dynamic_cast<const LineGrid*>(body.element.get())) {
         carry_plate(body, p.frame, {p.line, 0, 0}, -1, x);
@@ -107,36 +107,36 @@ State rigid_state(const Model& model, std::span<const Growth> growths, const Pla
       carry(p.frame, {}, true, body.first_dof, x);
       carry(p.frame, {.value = {1, 0}}, false, body.first_dof + 2, x);
     }
-  for (const Growth& g : growths) carry_in_hub(model, g, x);
+  for (const MovingRoot& g : moving_roots) carry_in_hub(model, g, x);
   return x;
 }
 
-bool rides_in_hubs(std::span<const Growth> growths, const Placement& placement) {
-  return !placement && std::all_of(growths.begin(), growths.end(),
-                                   [](const Growth& g) { return g.hub.body().empty(); });
+bool rides_in_hubs(std::span<const MovingRoot> moving_roots, const BodyPoses& body_poses) {
+  return !body_poses && std::all_of(moving_roots.begin(), moving_roots.end(),
+                                    [](const MovingRoot& g) { return g.hub.body().empty(); });
 }
 
-InHubs::InHubs(Workspace& model, std::span<const Growth> growths, double t)
-    : model_(model), growths_(growths), t_(t) {
-  for (const Growth& g : growths_) moving_.push_back(grid_of(model_.body(g.body)).copy());
+InHubs::InHubs(Workspace& model, std::span<const MovingRoot> moving_roots, double t)
+    : model_(model), moving_roots_(moving_roots), t_(t) {
+  for (const MovingRoot& g : moving_roots_) moving_.push_back(grid_of(model_.body(g.body)).copy());
 }
 
 InHubs::~InHubs() {
-  for (size_t i = 0; i < growths_.size(); ++i)
-    model_.set_element(body_named(model_, growths_[i].body), moving_[i]->copy());
+  for (size_t i = 0; i < moving_roots_.size(); ++i)
+    model_.set_element(body_named(model_, moving_roots_[i].body), moving_[i]->copy());
   model_.move_lines(t_);
 }
 
 State InHubs::at(double lines) {
-  for (size_t i = 0; i < growths_.size(); ++i) {
+  for (size_t i = 0; i < moving_roots_.size(); ++i) {
     const std::unique_ptr<LineGrid> mesh = moving_[i]->copy();
     mesh->move_to(lines);
-    model_.set_element(body_named(model_, growths_[i].body), mesh->frozen());
+    model_.set_element(body_named(model_, moving_roots_[i].body), mesh->frozen());
   }
-  State s = rigid_state(model_, growths_, {}, t_);
+  State s = rigid_state(model_, moving_roots_, {}, t_);
   spin_.setZero(model_.n_dofs());
   center_.setZero(model_.n_dofs());
-  for (const Growth& g : growths_) {
+  for (const MovingRoot& g : moving_roots_) {
     const Body& body = model_.body(g.body);
     const FrameMotion hub = g.hub.at(model_, s);
     for (int k = 0; k < body.element->n_vectors(); ++k) {
@@ -151,7 +151,7 @@ State InHubs::at(double lines) {
 }
 
 void InHubs::add_turn(const VectorXd& change, VectorXd& rate, bool transposed) const {
-  for (const Growth& g : growths_) {
+  for (const MovingRoot& g : moving_roots_) {
     const Body& body = model_.body(g.body);
     State now;
     now.t = t_;
@@ -194,11 +194,11 @@ void add_turns(const Model& model, const std::vector<double>& spins, const Vecto
   }
 }
 
-State carried_equilibrium(Workspace& model, std::span<const Growth> growths,
-                          const Placement& placement, double t) {
+State carried_equilibrium(Workspace& model, std::span<const MovingRoot> moving_roots,
+                          const BodyPoses& body_poses, double t) {
   constexpr int kPasses = 50;
   model.move_lines(t);
-  State s = rigid_state(model, growths, placement, t);
+  State s = rigid_state(model, moving_roots, body_poses, t);
   const State rigid = s;
   solve_carried_equilibrium(model, s);
   VectorXd last = rigid.q;
@@ -213,11 +213,11 @@ State carried_equilibrium(Workspace& model, std::span<const Growth> growths,
   return s;
 }
 
-SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const Growth> growths,
-                                     const Placement& placement, double t) {
+SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const MovingRoot> moving_roots,
+                                     const BodyPoses& body_poses, double t) {
   model.move_lines(t);
   SteadyEquilibrium out;
-  out.rigid = rigid_state(model, growths, placement, t);
+  out.rigid = rigid_state(model, moving_roots, body_poses, t);
   out.turning.resize(model.bodies().size());
   out.angle.resize(model.bodies().size());
   const auto take = [&](const std::string& name, const FrameMotion& frame) {
@@ -225,17 +225,17 @@ SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const Growth> g
     out.turning[b] = {frame.angle_rate, frame.angle_acceleration};
     out.angle[b] = frame.angle;
   };
-  if (placement)
-    for (const Placed& p : placement(t)) take(p.body, p.frame);
-  for (const Growth& g : growths) take(g.body, g.hub.at(model, out.rigid));
+  if (body_poses)
+    for (const BodyPose& p : body_poses(t)) take(p.body, p.frame);
+  for (const MovingRoot& g : moving_roots) take(g.body, g.hub.at(model, out.rigid));
   out.strained = out.rigid;
   solve_steady_equilibrium(model, out.turning, out.strained);
   return out;
 }
 
-bool rest_in_equilibrium(Workspace& model, State& x) {
-  constexpr double kNear = 0.02;  // in sizes of the model; the error of the hold is smaller
-  solve_resting_equilibrium(model, x);
+bool start_in_equilibrium(Workspace& model, State& x) {
+  constexpr double kNearby = 0.02;  // in sizes of the model; the error of the hold is smaller
+  solve_static_equilibrium(model, x);
   State exact = x;
   try {
     solve_carried_equilibrium(model, exact);
@@ -244,7 +244,7 @@ bool rest_in_equilibrium(Workspace& model, State& x) {
     return false;
   }
   const VectorXd moved = model.scales().cwiseProduct(exact.q - x.q);
-  if (!(moved.lpNorm<Eigen::Infinity>() <= kNear * x.q.lpNorm<Eigen::Infinity>())) return false;
+  if (!(moved.lpNorm<Eigen::Infinity>() <= kNearby * x.q.lpNorm<Eigen::Infinity>())) return false;
   x = exact;
   return true;
 }
@@ -265,12 +265,12 @@ namespace {
 /// Returns the state of Start::steady. The rate of the shape, in the axes of the bodies, is a
 /// forward difference of equilibria because drives need not be defined before the start of the
 /// motion.
-State steady_state(Workspace& model, std::span<const Growth> growths, const Placement& placement,
-                   double t, double delta) {
+State steady_state(Workspace& model, std::span<const MovingRoot> moving_roots,
+                   const BodyPoses& body_poses, double t, double delta) {
   VectorXd rate = VectorXd::Zero(model.n_dofs());
   std::vector<SteadyEquilibrium> at;
   for (const int k : {0, 1, 2})
-    at.push_back(steady_equilibrium(model, growths, placement, t + k * delta));
+    at.push_back(steady_equilibrium(model, moving_roots, body_poses, t + k * delta));
   for (const int k : {1, 0, 2}) {
     const SteadyEquilibrium& then = at[static_cast<size_t>(k)];
     VectorXd u = then.strained.q - then.rigid.q;
@@ -288,17 +288,18 @@ State steady_state(Workspace& model, std::span<const Growth> growths, const Plac
 
 /// Computes Start::prestretched for bodies in hubs. The rate of the strained shape due to the
 /// growth of the body is a central difference of equilibria.
-void stretch_in_hubs(Workspace& model, std::span<const Growth> growths, double delta, State& x) {
+void stretch_in_hubs(Workspace& model, std::span<const MovingRoot> moving_roots, double delta,
+                     State& x) {
   const double t = x.t;
   VectorXd q, later, earlier;
   {
-    InHubs stretched(model, growths, t);
+    InHubs stretched(model, moving_roots, t);
     q = stretched.at(t).q;
     later = stretched.at(t + delta).q;
     earlier = stretched.at(t - delta).q;
   }
   x.q = q;
-  for (const Growth& g : growths) {
+  for (const MovingRoot& g : moving_roots) {
     const Body& body = model.body(g.body);
     const FrameMotion hub = g.hub.at(model, x);
     for (int k = 0; k < body.element->n_vectors(); ++k) {
@@ -315,12 +316,12 @@ void stretch_in_hubs(Workspace& model, std::span<const Growth> growths, double d
 
 /// Computes Start::prestretched for a mechanism. The rate of the strained shape is a forward
 /// difference of equilibria because drives need not be defined before the start of the motion.
-void stretch_mechanism(Workspace& model, std::span<const Growth> growths,
-                       const Placement& placement, double delta, State& x) {
+void stretch_mechanism(Workspace& model, std::span<const MovingRoot> moving_roots,
+                       const BodyPoses& body_poses, double delta, State& x) {
   const double t = x.t;
   const auto strain = [&](double at) {
-    const VectorXd q = carried_equilibrium(model, growths, placement, at).q;
-    return VectorXd(q - rigid_state(model, growths, placement, at).q);
+    const VectorXd q = carried_equilibrium(model, moving_roots, body_poses, at).q;
+    return VectorXd(q - rigid_state(model, moving_roots, body_poses, at).q);
   };
   const VectorXd later = strain(t + delta), last = strain(t + 2 * delta), now = strain(t);
   x.q += now;
@@ -330,24 +331,24 @@ void stretch_mechanism(Workspace& model, std::span<const Growth> growths,
 }  // namespace
 }  // namespace start
 
-State start_state(Workspace& model, std::span<const Growth> growths, double t, Start kind,
-                  const Placement& placement, double delta) {
+State start_state(Workspace& model, std::span<const MovingRoot> moving_roots, double t, Start kind,
+                  const BodyPoses& body_poses, double delta) {
   model.move_lines(t);
-  State x = start::rigid_state(model, growths, placement, t);
+  State x = start::rigid_state(model, moving_roots, body_poses, t);
   if (kind == Start::rigid) return x;
   if (kind == Start::settled) {
-    solve_resting_equilibrium(model, x);
+    solve_static_equilibrium(model, x);
     return x;
   }
   if (kind == Start::at_rest) {
-    start::rest_in_equilibrium(model, x);
+    start::start_in_equilibrium(model, x);
     return x;
   }
-  if (kind == Start::steady) return start::steady_state(model, growths, placement, t, delta);
-  if (start::rides_in_hubs(growths, placement))
-    start::stretch_in_hubs(model, growths, delta, x);
+  if (kind == Start::steady) return start::steady_state(model, moving_roots, body_poses, t, delta);
+  if (start::rides_in_hubs(moving_roots, body_poses))
+    start::stretch_in_hubs(model, moving_roots, delta, x);
   else
-    start::stretch_mechanism(model, growths, placement, delta, x);
+    start::stretch_mechanism(model, moving_roots, body_poses, delta, x);
   return x;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/dynamics/mesh_changes/growth.h"
+#include "fem/dynamics/mesh_changes/moving_root.h"
 
 namespace flexmorph::fem {
 
@@ -18,33 +18,34 @@ enum class Start {
   steady,
   /// Zero velocities and static equilibrium, as exact as the restoring forces allow.
   at_rest,
-  /// Zero velocities, near static equilibrium (see solve_resting_equilibrium()): for mechanisms
+  /// Zero velocities, near static equilibrium (see solve_static_equilibrium()): for mechanisms
   /// with degrees of freedom that nothing drives.
   settled
 };
 
 /// Motion of a body that no hub carries, as a rigid body: a rigid body, a beam, or a plate that is
 /// held by other joints.
-struct Placed {
+struct BodyPose {
   std::string body;   ///< Name of the body.
   FrameMotion frame;  ///< Motion of the axes of the body.
   double line = 0;    ///< Coordinate X of a plate or beam at the origin of the axes [m].
 };
 
 /// A function that returns the motions of all bodies without hub at time t [s].
-using Placement = std::function<std::vector<Placed>(double t)>;
+using BodyPoses = std::function<std::vector<BodyPose>(double t)>;
 
 /// Returns positions and velocities at time t of a model whose bodies are carried by hubs or are
 /// placed. Integrator::make_consistent() computes accelerations and multipliers afterwards.
 ///
-/// @param growths    Moving-root mesh control of the plates, with their hubs.
-/// @param placement  Motion of the bodies without hub; evaluated at a few times in [t, t + 2 δ] for
+/// @param moving_roots    Moving-root mesh control of the plates, with their hubs.
+/// @param body_poses  Motion of the bodies without hub; evaluated at a few times in [t, t + 2 δ]
+/// for
 ///                   the kinds prestretched and steady.
 /// @param delta      Time difference δ [s] for the rate of the strained shape. Material lines are
 /// moved
 ///                   to times up to t ± 2 δ; therefore shorter motions need a smaller δ.
 /// @throws Error (numerical) if no static equilibrium is found.
-State start_state(Workspace& model, std::span<const Growth> growths, double t, Start kind,
-                  const Placement& placement = {}, double delta = 1e-4);
+State start_state(Workspace& model, std::span<const MovingRoot> moving_roots, double t, Start kind,
+                  const BodyPoses& body_poses = {}, double delta = 1e-4);
 
 }  // namespace flexmorph::fem

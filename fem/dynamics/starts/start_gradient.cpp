@@ -57,9 +57,10 @@ class Equilibria {
   VectorXd psi_, chi_;
 };
 
-void derive_in_hubs(Workspace& model, std::span<const Growth> growths, double t, double delta,
-                    const VectorXd& by_q, const VectorXd& by_v, Equilibria& equilibria) {
-  start::InHubs stretched(model, growths, t);
+void derive_in_hubs(Workspace& model, std::span<const MovingRoot> moving_roots, double t,
+                    double delta, const VectorXd& by_q, const VectorXd& by_v,
+                    Equilibria& equilibria) {
+  start::InHubs stretched(model, moving_roots, t);
   const auto derive = [&](double lines, const VectorXd& seed) {
     State s = stretched.at(lines);
     equilibria.derive(s, {1, 0, 0}, stretched.spin(), seed);
@@ -71,30 +72,30 @@ void derive_in_hubs(Workspace& model, std::span<const Growth> growths, double t,
   derive(t - delta, -by_v / (2 * delta));
 }
 
-void derive_mechanism(Workspace& model, std::span<const Growth> growths, const Placement& placement,
-                      double t, double delta, const VectorXd& by_q, const VectorXd& by_v,
-                      Equilibria& equilibria) {
+void derive_mechanism(Workspace& model, std::span<const MovingRoot> moving_roots,
+                      const BodyPoses& body_poses, double t, double delta, const VectorXd& by_q,
+                      const VectorXd& by_v, Equilibria& equilibria) {
   for (const int k : {1, 2, 0}) {
     const double at = t + k * delta;
-    const State s = start::carried_equilibrium(model, growths, placement, at);
+    const State s = start::carried_equilibrium(model, moving_roots, body_poses, at);
     VectorXd seed = start::kForward[k] / (2 * delta) * by_v;
     if (k == 0) seed += by_q;
     if (model.dissipation(s) > 0)
       equilibria.derive_turning(
-          s, start::spins(model, start::rigid_state(model, growths, placement, at)), seed);
+          s, start::spins(model, start::rigid_state(model, moving_roots, body_poses, at)), seed);
     else
       equilibria.derive(s, {1, 0, 0}, {}, seed);
   }
 }
 
 /// Computes the transposed operations of steady_state() of start.cpp.
-void derive_steady(Workspace& model, std::span<const Growth> growths, const Placement& placement,
-                   double t, double delta, const VectorXd& by_q, const VectorXd& by_v,
-                   Equilibria& equilibria) {
+void derive_steady(Workspace& model, std::span<const MovingRoot> moving_roots,
+                   const BodyPoses& body_poses, double t, double delta, const VectorXd& by_q,
+                   const VectorXd& by_v, Equilibria& equilibria) {
   std::vector<double> now;
   for (const int k : {0, 1, 2}) {
     const start::SteadyEquilibrium s =
-        start::steady_equilibrium(model, growths, placement, t + k * delta);
+        start::steady_equilibrium(model, moving_roots, body_poses, t + k * delta);
     if (k == 0) now = s.angle;
     std::vector<double> on = s.angle, spins;
     for (size_t b = 0; b < on.size(); ++b) on[b] -= now[b];
@@ -112,29 +113,29 @@ void derive_steady(Workspace& model, std::span<const Growth> growths, const Plac
 
 }  // namespace
 
-void derive_start(Workspace& model, std::span<const Growth> growths, double t, Start kind,
-                  const Placement& placement, double delta, const VectorXd& by_q,
+void derive_start(Workspace& model, std::span<const MovingRoot> moving_roots, double t, Start kind,
+                  const BodyPoses& body_poses, double delta, const VectorXd& by_q,
                   const VectorXd& by_v, const SeeWork& see) {
   if (kind == Start::rigid) return;
   Equilibria equilibria(model, see);
   if (kind == Start::settled || kind == Start::at_rest) {
     model.move_lines(t);
-    State s = start::rigid_state(model, growths, placement, t);
+    State s = start::rigid_state(model, moving_roots, body_poses, t);
     const VectorXd rigid = s.q;
     if (kind == Start::settled)
-      solve_resting_equilibrium(model, s);
-    else if (start::rest_in_equilibrium(model, s))
+      solve_static_equilibrium(model, s);
+    else if (start::start_in_equilibrium(model, s))
       return equilibria.derive(s, {1, 0, 0}, {}, by_q);
     s.a = kLastHold * (s.q - rigid);
     equilibria.derive(s, {1, 0, kLastHold}, {}, by_q);
     return;
   }
   if (kind == Start::steady)
-    return derive_steady(model, growths, placement, t, delta, by_q, by_v, equilibria);
-  if (start::rides_in_hubs(growths, placement))
-    derive_in_hubs(model, growths, t, delta, by_q, by_v, equilibria);
+    return derive_steady(model, moving_roots, body_poses, t, delta, by_q, by_v, equilibria);
+  if (start::rides_in_hubs(moving_roots, body_poses))
+    derive_in_hubs(model, moving_roots, t, delta, by_q, by_v, equilibria);
   else
-    derive_mechanism(model, growths, placement, t, delta, by_q, by_v, equilibria);
+    derive_mechanism(model, moving_roots, body_poses, t, delta, by_q, by_v, equilibria);
 }
 
 }  // namespace flexmorph::fem

@@ -14,8 +14,8 @@ using SeeWork = std::function<void(const State& x, const VectorXd& psi)>;
 /// @param by_q, by_v  Derivatives of the scalar with respect to x.q and x.v of the start (n_dofs).
 /// @param see         Called for every equilibrium with the negative adjoint solution.
 /// @throws Error (numerical) as start_state(), or if an equilibrium is singular.
-void derive_start(Workspace& model, std::span<const Growth> growths, double t, Start kind,
-                  const Placement& placement, double delta, const VectorXd& by_q,
+void derive_start(Workspace& model, std::span<const MovingRoot> moving_roots, double t, Start kind,
+                  const BodyPoses& body_poses, double delta, const VectorXd& by_q,
                   const VectorXd& by_v, const SeeWork& see);
 
 }  // namespace flexmorph::fem

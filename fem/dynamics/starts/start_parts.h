@@ -11,12 +11,12 @@ namespace flexmorph::fem::start {
 
 /// Returns the state of the model as rigid, extending bodies at time t [s]. Material lines must be
 /// at their positions at t.
-State rigid_state(const Model& model, std::span<const Growth> growths, const Placement& placement,
-                  double t);
+State rigid_state(const Model& model, std::span<const MovingRoot> moving_roots,
+                  const BodyPoses& body_poses, double t);
 
 /// Returns true if all bodies are carried by hubs with prescribed motion. The prestretched start is
 /// then computed in the frames of the hubs.
-bool rides_in_hubs(std::span<const Growth> growths, const Placement& placement);
+bool rides_in_hubs(std::span<const MovingRoot> moving_roots, const BodyPoses& body_poses);
 
 /// Static equilibria in rotating hubs, with the material lines frozen at their positions at given
 /// times. The destructor restores the meshes of the model and moves the lines to their positions at
@@ -24,7 +24,7 @@ bool rides_in_hubs(std::span<const Growth> growths, const Placement& placement);
 class InHubs {
  public:
   /// Stores the meshes of the model, whose hubs are at time t [s].
-  InHubs(Workspace& model, std::span<const Growth> growths, double t);
+  InHubs(Workspace& model, std::span<const MovingRoot> moving_roots, double t);
   ~InHubs();
   InHubs(const InHubs&) = delete;
   InHubs& operator=(const InHubs&) = delete;
@@ -41,7 +41,7 @@ class InHubs {
 
  private:
   Workspace& model_;
-  std::span<const Growth> growths_;
+  std::span<const MovingRoot> moving_roots_;
   double t_;
   std::vector<std::unique_ptr<LineGrid>> moving_;
   VectorXd spin_, center_;
@@ -50,8 +50,8 @@ class InHubs {
 /// Returns the static equilibrium under the inertia forces of the rigid motion at t [s]; the lines
 /// of the model are left at t. A strained body rotates like a rigid body, so that damping of the
 /// material does not resist the rotation.
-State carried_equilibrium(Workspace& model, std::span<const Growth> growths,
-                          const Placement& placement, double t);
+State carried_equilibrium(Workspace& model, std::span<const MovingRoot> moving_roots,
+                          const BodyPoses& body_poses, double t);
 /// Returns the angular velocity of every body in the state `rigid` [rad/s]; a strained body rotates
 /// with it, too.
 std::vector<double> spins(const Model& model, const State& rigid);
@@ -67,13 +67,13 @@ struct SteadyEquilibrium {
 };
 /// Computes the equilibrium of a steady start at t [s]; the lines of the model are left at t.
 /// @throws Error (numerical) as solve_steady_equilibrium().
-SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const Growth> growths,
-                                     const Placement& placement, double t);
+SteadyEquilibrium steady_equilibrium(Workspace& model, std::span<const MovingRoot> moving_roots,
+                                     const BodyPoses& body_poses, double t);
 /// Computes the static equilibrium at zero velocity.
 /// @param x  in: a rigid state; out: the equilibrium.
 /// @returns true if the equilibrium is exact; otherwise a force -kLastHold M (q - q₀) acts, which
 /// holds degrees of freedom with hardly any restoring force.
-bool rest_in_equilibrium(Workspace& model, State& x);
+bool start_in_equilibrium(Workspace& model, State& x);
 /// Rotates the vectors of every body by an angle [rad].
 void turn_by(const Model& model, const std::vector<double>& angles, VectorXd& vectors);
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fem/solve/factorization/border.h"
 #include "fem/solve/factorization/fill_order.h"
 #include "fem/solve/factorization/multifrontal.h"
 #include "fem/solve/factorization/substitution.h"
@@ -16,14 +17,8 @@ namespace flexmorph::fem {
 
 namespace {
 
-/// Largest size of the border relative to the square root of the number of unknowns, which is about
-/// the number on one edge of a square plate. Two plates of 348 x 40 cells between welded edges have
-/// 4.4 and take a third of the time of UMFPACK.
-constexpr double kMostBorder = 6;
-/// Relative difference up to which entries are equal; it is round-off of the elements.
-constexpr double kSymmetry = 1e-13;
 /// Reciprocal condition of S, rows scaled, below which UMFPACK is used.
-constexpr double kTrusted = 1e-13;
+constexpr double kMinReciprocalCondition = 1e-13;
 
 size_t at(int k) { return static_cast<size_t>(k); }
 
@@ -40,22 +35,15 @@ void turn_pair(X&& x, Y&& y, double cosine, double sine) {
 }  // namespace
 
 struct BorderedCholesky::Impl {
-  struct Pair {
-    int row, column, lower, upper;  // indices of the entries (row, column) and (column, row)
-  };
   struct BorderEntry {
-    int row, column, place;  // position in D and index in the matrix
+    int row, column, value_index;  // position in D and index in the matrix
   };
-  int n = 0;      // number of all unknowns
-  int rings = 1;  // layers of unknowns around the constraints that belong to the border
-  std::vector<char> in_border;     // (n)
-  std::vector<int> constraints;    // unknowns without an entry on the diagonal
-  std::vector<Pair> pairs;         // below the diagonal
-  std::vector<int> mirrors;        // index of the transposed entry of every entry
+  int n = 0;  // number of all unknowns
+  Border border;
   std::vector<int> order, number;  // unknown of each position, A first; position of each unknown
   int n_inner = 0;
-  std::vector<int> places;  // index in the matrix of every value of the factor
-  bool refused = false;     // true if the symmetric part was not accurate enough with this pattern
+  std::vector<int> value_indices;  // index in the matrix of every value of the factor
+  bool refused = false;  // true if the symmetric part was not accurate enough with this pattern
   VectorXd tried, image, back;
   std::vector<BorderEntry> border_entries;
   std::optional<Multifrontal> factor;  // empty: to be analysed
@@ -70,15 +58,9 @@ struct BorderedCholesky::Impl {
   VectorXd permuted, block, tail, swapped;
 
   int n_border() const { return n - n_inner; }
-  bool pair_up(const SparseMatrix& a);
-  bool is_small_enough() const;
   enum class Outcome { factored, too_unsymmetric, not_definite };
   Outcome factorize_inner(const SparseMatrix& a);
   bool factorize_values(const SparseMatrix& a, bool mean);
-  void hold(const SparseMatrix& a);
-  template <class F>
-  void for_unequal(const SparseMatrix& a, const F& f) const;
-  bool widen(const SparseMatrix& a);
   std::vector<int> groups(const SparseMatrix& a) const;
   void number_unknowns(const SparseMatrix& a);
   void analyze_inner(const SparseMatrix& a);
@@ -86,7 +68,7 @@ struct BorderedCholesky::Impl {
   void backward();
   void solve_border(bool transposed);
   /// Replaces vectors from a position on by Q x (way = 1) or Qᵀ x (way = -1).
-  void turn_places(int from, double way) {
+  void turn_vectors(int from, double way) {
     for (const Turn& t : turns) {
       if (t.x < from) continue;
       const double x = permuted[t.x], y = permuted[t.y], s = way * t.sine;
@@ -102,83 +84,9 @@ BorderedCholesky::~BorderedCholesky() = default;
 bool BorderedCholesky::analyze(const SparseMatrix& a) {
   Impl& s = *impl_;
   s.factor.reset();
-  s.rings = 1;
   s.refused = false;
   s.n = static_cast<int>(a.rows());
-  if (!s.pair_up(a)) return false;
-  s.hold(a);
-  return s.is_small_enough();
-}
-
-bool BorderedCholesky::Impl::is_small_enough() const {
-  const auto size = std::count(in_border.begin(), in_border.end(), 1);
-  return size < n && static_cast<double>(size) <= kMostBorder * std::sqrt(n);
-}
-
-/// Finds the transposed entry of every entry below the diagonal; false for an unsymmetric pattern.
-bool BorderedCholesky::Impl::pair_up(const SparseMatrix& a) {
-  const int *starts = a.outerIndexPtr(), *rows = a.innerIndexPtr();
-  pairs.clear();
-  mirrors.resize(static_cast<size_t>(starts[n]));
-  std::iota(mirrors.begin(), mirrors.end(), 0);
-  // Columns ascend, so that a row above the diagonal is read from left to right.
-  std::vector<int> next(starts, starts + n);
-  for (int column = 0; column < n; ++column)
-    for (int p = starts[column]; p < starts[column + 1]; ++p) {
-      const int row = rows[p];
-      if (row <= column) continue;
-      const int upper = next[at(row)]++;
-      if (upper == starts[row + 1] || rows[upper] != column) return false;
-      pairs.push_back({row, column, p, upper});
-      std::swap(mirrors[at(p)], mirrors[at(upper)]);
-    }
-  for (int column = 0; column < n; ++column) {
-    const int p = next[at(column)];
-    if (p < starts[column + 1] && rows[p] < column) return false;
-  }
-  return true;
-}
-
-/// Puts into the border the constraints, the unknowns they act on, and with a second ring the
-/// neighbours of these unknowns.
-void BorderedCholesky::Impl::hold(const SparseMatrix& a) {
-  const int *starts = a.outerIndexPtr(), *rows = a.innerIndexPtr();
-  in_border.assign(at(n), 0);
-  constraints.clear();
-  for (int k = 0; k < n; ++k)
-    if (!std::binary_search(rows + starts[k], rows + starts[k + 1], k)) constraints.push_back(k);
-  std::vector<int> from = constraints;
-  for (const int k : from) in_border[at(k)] = 1;
-  for (int ring = 0; ring < rings; ++ring) {
-    std::vector<int> around;
-    for (const int column : from)
-      for (int p = starts[column]; p < starts[column + 1]; ++p)
-        if (!std::exchange(in_border[at(rows[p])], 1)) around.push_back(rows[p]);
-    from.swap(around);
-  }
-}
-
-/// Calls f(pair) for entries outside of the border that are not symmetric, until it returns false.
-template <class F>
-void BorderedCholesky::Impl::for_unequal(const SparseMatrix& a, const F& f) const {
-  const double* x = a.valuePtr();
-  const double allowed =
-      kSymmetry * Eigen::Map<const VectorXd>(x, a.nonZeros()).lpNorm<Eigen::Infinity>();
-  for (const Pair& p : pairs)
-    if (std::abs(x[p.lower] - x[p.upper]) > allowed &&
-        !(in_border[at(p.row)] && in_border[at(p.column)]) && !f(p))
-      return;
-}
-
-/// Adds unknowns with unsymmetric entries to the border.
-/// @returns true if there were any
-bool BorderedCholesky::Impl::widen(const SparseMatrix& a) {
-  bool any = false;
-  for_unequal(a, [&](const Pair& p) {
-    in_border[at(p.row)] = in_border[at(p.column)] = 1;
-    return any = true;
-  });
-  return any;
+  return s.border.analyze(a);
 }
 
 /// Groups unknowns whose columns have the same rows, as the unknowns of one node have; they are
@@ -187,7 +95,7 @@ std::vector<int> BorderedCholesky::Impl::groups(const SparseMatrix& a) const {
   const int *starts = a.outerIndexPtr(), *rows = a.innerIndexPtr();
   std::vector<int> out = {0};
   for (int k = 1; k < n; ++k)
-    if (in_border[at(k)] != in_border[at(k - 1)] ||
+    if (border.contains[at(k)] != border.contains[at(k - 1)] ||
         !std::equal(rows + starts[k - 1], rows + starts[k], rows + starts[k], rows + starts[k + 1]))
       out.push_back(k);
   out.push_back(n);
@@ -201,7 +109,7 @@ void BorderedCholesky::Impl::number_unknowns(const SparseMatrix& a) {
   for (size_t g = 0; g < n_groups; ++g)
     std::fill(group_of.begin() + first[g], group_of.begin() + first[g + 1], static_cast<int>(g));
   for (size_t g = 0; g < n_groups; ++g) {
-    sides[g] = in_border[at(first[g])];
+    sides[g] = border.contains[at(first[g])];
     bool itself = false;
     for (int p = a.outerIndexPtr()[first[g]]; p < a.outerIndexPtr()[first[g] + 1]; ++p) {
       const int other = group_of[at(a.innerIndexPtr()[p])];
@@ -221,7 +129,7 @@ void BorderedCholesky::Impl::number_unknowns(const SparseMatrix& a) {
     for (int k = first[at(g)]; k < first[at(g) + 1]; ++k) order.push_back(k);
   number.resize(at(n));
   for (int k = 0; k < n; ++k) number[at(order[at(k)])] = k;
-  n_inner = static_cast<int>(std::count(in_border.begin(), in_border.end(), 0));
+  n_inner = static_cast<int>(std::count(border.contains.begin(), border.contains.end(), 0));
 }
 
 /// Builds the lower triangle of A and E in the order of elimination, and the list of entries of D.
@@ -229,7 +137,7 @@ void BorderedCholesky::Impl::analyze_inner(const SparseMatrix& a) {
   number_unknowns(a);
   std::vector<int> starts = {0}, rows;
   std::vector<std::pair<int, int>> column;  // rows and indices of entries
-  places.clear();
+  value_indices.clear();
   border_entries.clear();
   for (int j = 0; j < n; ++j) {
     const int of = order[at(j)];
@@ -241,9 +149,9 @@ void BorderedCholesky::Impl::analyze_inner(const SparseMatrix& a) {
     }
     if (j >= n_inner) continue;
     std::sort(column.begin(), column.end());
-    for (const auto& [row, place] : column) {
+    for (const auto& [row, value_index] : column) {
       rows.push_back(row);
-      places.push_back(place);
+      value_indices.push_back(value_index);
     }
     starts.push_back(static_cast<int>(rows.size()));
   }
@@ -257,10 +165,10 @@ void BorderedCholesky::Impl::analyze_inner(const SparseMatrix& a) {
 }
 
 BorderedCholesky::Impl::Outcome BorderedCholesky::Impl::factorize_inner(const SparseMatrix& a) {
-  const std::vector<char> before = in_border;
-  if (widen(a)) {
-    if (!is_small_enough()) {  // the next matrix may be symmetric
-      in_border = before;
+  const std::vector<char> before = border.contains;
+  if (border.widen(a)) {
+    if (!border.is_small_enough()) {  // the next matrix may be symmetric
+      border.contains = before;
       return Outcome::too_unsymmetric;
     }
     factor.reset();
@@ -275,7 +183,8 @@ bool BorderedCholesky::Impl::factorize_values(const SparseMatrix& a, bool mean) 
   const auto values = factor->values();
   for (size_t k = 0; k < values.size(); ++k)
     values[k] =
-        mean ? 0.5 * (entries[places[k]] + entries[mirrors[at(places[k])]]) : entries[places[k]];
+        mean ? 0.5 * (entries[value_indices[k]] + entries[border.mirrors[at(value_indices[k])]])
+             : entries[value_indices[k]];
   return factor->factorize(&updates) < 0;
 }
 
@@ -283,18 +192,10 @@ bool BorderedCholesky::factorize(const SparseMatrix& a, double miss) {
   using Outcome = Impl::Outcome;
   Impl& s = *impl_;
   Outcome outcome = s.factorize_inner(a);
-  if (outcome == Outcome::not_definite && s.rings == 1) {
-    // Without inertia a plate on one pin is singular unless the border contains the neighbours.
-    const std::vector<char> before = s.in_border;
-    s.rings = 2;
-    s.hold(a);
-    if (s.is_small_enough()) {
-      s.factor.reset();
-      outcome = s.factorize_inner(a);
-    } else {
-      s.rings = 1;
-      s.in_border = before;
-    }
+  // Without inertia a plate on one pin turns about it: the neighbours of the pin hold it.
+  if (outcome == Outcome::not_definite && s.border.add_second_layer(a)) {
+    s.factor.reset();
+    outcome = s.factorize_inner(a);
   }
   if (outcome == Outcome::factored) return renew_border(a, {});
   if (outcome == Outcome::not_definite || !(miss > 0) || s.refused) return false;
@@ -309,21 +210,21 @@ double BorderedCholesky::misses(const SparseMatrix& a) {
   s.tried.resize(s.n);
   for (int k = 0; k < s.n; ++k)  // any vector that is not an eigenvector
     s.tried[k] = std::cos(static_cast<double>(k) * k);
-  for (const int row : s.constraints) s.tried[row] = 0;
+  for (const int row : s.border.constraints) s.tried[row] = 0;
   double out = 0;
   for (int pass = 0; pass < kPasses; ++pass) {
     s.tried /= s.tried.lpNorm<Eigen::Infinity>();
     s.image.noalias() = a * s.tried;
     solve(s.image, s.back);
     s.tried -= s.back;
-    for (const int row : s.constraints) s.tried[row] = 0;
+    for (const int row : s.border.constraints) s.tried[row] = 0;
     out = s.tried.lpNorm<Eigen::Infinity>();
     if (out == 0) break;
   }
   return out;
 }
 
-const std::vector<char>& BorderedCholesky::border() const { return impl_->in_border; }
+const std::vector<char>& BorderedCholesky::border() const { return impl_->border.contains; }
 
 bool BorderedCholesky::renew_border(const SparseMatrix& a, std::span<const TurnedVectors> turns) {
   Impl& s = *impl_;
@@ -331,21 +232,21 @@ bool BorderedCholesky::renew_border(const SparseMatrix& a, std::span<const Turne
   s.turns.clear();
   for (const TurnedVectors& t : turns)
     for (int k = t.first; k < t.last; k += 2) {
-      if (s.in_border[at(k)] != s.in_border[at(k + 1)]) return false;
+      if (s.border.contains[at(k)] != s.border.contains[at(k + 1)]) return false;
       s.turns.push_back({s.number[at(k)], s.number[at(k + 1)], t.cosine, t.sine});
-      if (!s.in_border[at(k)]) continue;
+      if (!s.border.contains[at(k)]) continue;
       const int x = s.number[at(k)] - s.n_inner, y = s.number[at(k + 1)] - s.n_inner;
       turn_pair(s.schur.row(x), s.schur.row(y), t.cosine, t.sine);
       turn_pair(s.schur.col(x), s.schur.col(y), t.cosine, t.sine);
     }
   if (s.n_border() == 0) return true;
   for (const Impl::BorderEntry& e : s.border_entries)
-    s.schur(e.row, e.column) += a.valuePtr()[e.place];
+    s.schur(e.row, e.column) += a.valuePtr()[e.value_index];
   s.row_scales = s.schur.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
   if (!s.row_scales.allFinite()) return false;
   s.schur = s.row_scales.asDiagonal() * s.schur;
   s.schur_factor.compute(s.schur);
-  return s.schur_factor.rcond() > kTrusted;
+  return s.schur_factor.rcond() > kMinReciprocalCondition;
 }
 
 void BorderedCholesky::Impl::forward() {
@@ -397,26 +298,27 @@ void BorderedCholesky::solve(const VectorXd& b, VectorXd& x, bool transposed) {
   Impl& s = *impl_;
   const int n = s.n, m = s.n_border();
   for (int k = 0; k < n; ++k) s.permuted[k] = b[s.order[at(k)]];
-  s.turn_places(0, -1);
+  s.turn_vectors(0, -1);
   s.forward();
   if (m > 0) {
-    s.turn_places(s.n_inner, 1);
+    s.turn_vectors(s.n_inner, 1);
     s.tail = s.permuted.tail(m);
     s.solve_border(transposed);
     s.permuted.tail(m) = s.tail;
-    s.turn_places(s.n_inner, -1);
+    s.turn_vectors(s.n_inner, -1);
   }
   s.backward();
-  s.turn_places(0, 1);
+  s.turn_vectors(0, 1);
   x.resize(n);
   for (int k = 0; k < n; ++k) x[s.order[at(k)]] = s.permuted[k];
 }
 
-void BorderedCholesky::remember(Memory& memory) {
+void BorderedCholesky::archive(Archive& memory) {
   Impl& s = *impl_;
-  std::vector<char> border = s.in_border;
-  memory(border, s.rings, s.refused);
-  if (memory.puts_back() && border.size() == s.in_border.size()) s.in_border = std::move(border);
+  std::vector<char> border = s.border.contains;
+  memory(border, s.border.layers, s.refused);
+  if (memory.is_restoring() && border.size() == s.border.contains.size())
+    s.border.contains = std::move(border);
 }
 
 }  // namespace flexmorph::fem

@@ -6,7 +6,7 @@
 
 #include "fem/dofs.h"
 #include "fem/solve/turned_vectors.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 
 namespace flexmorph::fem {
 
@@ -51,7 +51,7 @@ class BorderedCholesky {
   void solve(const VectorXd& b, VectorXd& x, bool transposed = false);
 
   /// Saves or restores the border as it has grown; call it after analyze().
-  void remember(Memory& memory);
+  void archive(Archive& memory);
 
  private:
   double misses(const SparseMatrix& a);

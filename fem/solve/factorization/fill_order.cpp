@@ -27,7 +27,7 @@ std::vector<int> fill_order(std::span<const int> starts, std::span<const int> ne
   const bool done = cholmod_camd(&pattern, nullptr, 0, const_cast<int*>(groups.data()),
                                  order.data(), &common) != 0;
   cholmod_finish(&common);
-  if (!done) throw Error::numerical("linear solver: CHOLMOD could not order the unknowns");
+  if (!done) throw Error::numerical("linear solver: CHOLMOD cannot order the unknowns");
   return order;
 }
 

@@ -7,7 +7,7 @@ namespace flexmorph::fem {
 namespace {
 
 // Number of nodes of a rectangle that is not halved any more. Blocks of the factor join more nodes.
-constexpr int kSmallest = 4;
+constexpr int kMinBlock = 4;
 
 struct Dissection {
   const Grid& grid;
@@ -16,7 +16,7 @@ struct Dissection {
   /// Orders the nodes [i, i_end) x [j, j_end).
   void order_rectangle(int i, int i_end, int j, int j_end) {
     const int wide = i_end - i, high = j_end - j;
-    if (wide * high <= kSmallest || (wide < 3 && high < 3)) {
+    if (wide * high <= kMinBlock || (wide < 3 && high < 3)) {
       append(i, i_end, j, j_end);
     } else if (wide >= high) {
       const int middle = i + wide / 2;

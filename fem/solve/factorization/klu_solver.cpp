@@ -44,7 +44,7 @@ double* values(const SparseMatrix& a) { return const_cast<double*>(a.valuePtr())
 
 [[noreturn]] void fail(int status) {
   if (status == KLU_SINGULAR) throw Error::numerical("KLU: the matrix is singular");
-  throw Error::numerical("KLU failed, status " + std::to_string(status));
+  throw Error::numerical("KLU failed with status " + std::to_string(status));
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ void KluSolver::factorize(const SparseMatrix& a) {
   Impl& s = *impl_;
   if (a.rows() == 0) return;
   if (!Eigen::Map<const VectorXd>(a.valuePtr(), a.nonZeros()).allFinite())
-    throw Error::numerical("KLU: the matrix holds numbers that are not finite");
+    throw Error::numerical("KLU: the matrix contains numbers that are not finite");
   if (s.numeric) {
     if (klu_refactor(starts(a), rows(a), values(a), s.symbolic, s.numeric, &s.common) &&
         s.common.status == KLU_OK &&
@@ -82,11 +82,11 @@ void KluSolver::factorize(const SparseMatrix& a) {
   fail(status);
 }
 
-void KluSolver::remember(Memory& memory, const SparseMatrix& a) {
+void KluSolver::archive(Archive& memory, const SparseMatrix& a) {
   bool is_factored = impl_->numeric != nullptr, keeps_pivots = impl_->keeps_pivots;
   VectorXd pivoted = impl_->pivoted;
   memory(is_factored, keeps_pivots, pivoted);
-  if (!memory.puts_back()) return;
+  if (!memory.is_restoring()) return;
   analyze(a);
   if (!is_factored || pivoted.size() != a.nonZeros()) return;
   SparseMatrix first = a;

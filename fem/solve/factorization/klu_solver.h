@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "fem/dofs.h"
-#include "geometry/memory.h"
+#include "geometry/archive.h"
 
 namespace flexmorph::fem {
 
@@ -31,7 +31,7 @@ class KluSolver {
   /// Saves or restores the matrix values from which analysis and factors were made. On restoring,
   /// both are recomputed, identical bit for bit.
   /// @param a  the matrix of the last factorize(), or of analyze() if no factorize() followed
-  void remember(Memory& memory, const SparseMatrix& a);
+  void archive(Archive& memory, const SparseMatrix& a);
   /// Returns an estimate of ‖A‖₁ ‖A⁻¹‖₁ of the matrix of the last factorize().
   double condition(const SparseMatrix& a) const;
 

@@ -37,7 +37,7 @@ void Multifrontal::fill_block(int s, double* block) {
   const auto begin = static_cast<std::size_t>(starts_[static_cast<std::size_t>(blocks_.first[at])]);
   const auto end =
       static_cast<std::size_t>(starts_[static_cast<std::size_t>(blocks_.first[at + 1])]);
-  for (std::size_t k = begin; k < end; ++k) factor_[blocks_.place[k]] = values_[k];
+  for (std::size_t k = begin; k < end; ++k) factor_[blocks_.value_index[k]] = values_[k];
 }
 
 /// Adds the update of a child to its parent: to the block and to the parent's own update.
@@ -148,7 +148,7 @@ double Multifrontal::condition() const {
     for (int c = first; c < first + width; ++c)
       for (auto k = static_cast<std::size_t>(starts_[static_cast<std::size_t>(c)]);
            k < static_cast<std::size_t>(starts_[static_cast<std::size_t>(c) + 1]); ++k) {
-        const auto row = static_cast<int>((blocks_.place[k] - blocks_.offset[at]) %
+        const auto row = static_cast<int>((blocks_.value_index[k] - blocks_.offset[at]) %
                                           static_cast<std::size_t>(blocks_.height(s)));
         const int i = row < width ? first + row : blocks_.below(s)[row - width];
         if (i >= size()) continue;

@@ -50,14 +50,14 @@ LoadRange reaching(std::span<const int> active, int column, const LoadRange& min
 /// results would differ. A supernode stays in the cache from block to block.
 struct LoadBlocks {
   /// Fewer loads do too little work per entry of L that is read.
-  static constexpr int kSmallest = 16;
-  static constexpr int kMost = 4;
+  static constexpr int kMinLoads = 16;
+  static constexpr int kMaxThreads = 4;
 
   int n_loads, n;
   int first = 0, last = 0;  ///< Blocks of one thread.
 
   explicit LoadBlocks(int loads)
-      : n_loads(loads), n(std::clamp(loads / kSmallest, 1, kMost)), last(n) {}
+      : n_loads(loads), n(std::clamp(loads / kMinLoads, 1, kMaxThreads)), last(n) {}
   LoadRange block(int k) const {
     const int from = n_loads * k / n, to = n_loads * (k + 1) / n;
     return {from, to - from};
@@ -115,7 +115,7 @@ struct SupernodalFactor::Impl {
                const LoadRange& mine) const;
   void backward(int s, MatrixXd& x, std::span<const int> active, const Fill& fill,
                 const LoadRange& mine) const;
-  void make_room(Eigen::Index n_loads) const {
+  void reserve_memory(Eigen::Index n_loads) const {
     if (gathered.cols() < n_loads || gathered.rows() < most_below)
       gathered.resize(most_below, n_loads);
   }
@@ -150,7 +150,7 @@ double SupernodalFactor::condition() const { return impl_->front.condition(); }
 
 void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active, int tail) const {
   const Impl& m = *impl_;
-  m.make_room(x.rows());
+  m.reserve_memory(x.rows());
   each_share(x.rows(), [&](const LoadBlocks& mine) {
     for (int s = 0; s < m.n_supernodes(); ++s)
       for (int k = mine.first; k < mine.last; ++k) m.forward(s, x, active, tail, mine.block(k));
@@ -159,7 +159,7 @@ void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active, int tai
 
 void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const Fill& fill) const {
   const Impl& m = *impl_;
-  m.make_room(x.rows());
+  m.reserve_memory(x.rows());
   each_share(x.rows(), [&](const LoadBlocks& mine) {
     for (int s = m.n_supernodes() - 1; s >= 0; --s)
       for (int k = mine.first; k < mine.last; ++k) m.backward(s, x, active, fill, mine.block(k));

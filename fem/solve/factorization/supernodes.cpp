@@ -70,13 +70,13 @@ void Analysis::run(std::span<const int> starts, std::span<const int> rows) {
   common.zrelax[2] = kZerosAny;
   factor = cholmod_analyze(&pattern, &common);
   if (factor == nullptr || factor->is_super == 0)
-    throw Error::numerical("plate solver: CHOLMOD could not analyse a matrix of " +
+    throw Error::numerical("plate solver: CHOLMOD cannot analyse the matrix of " +
                            std::to_string(pattern.nrow) + " unknowns (status " +
-                           std::to_string(common.status) + "; -2 is out of memory)");
+                           std::to_string(common.status) + "; -2 means out of memory)");
 }
 
 /// Returns the index of `row` among the rows of a block.
-int place_in(const Supernodes& b, int s, int row) {
+int value_index_in(const Supernodes& b, int s, int row) {
   const int first = b.first[static_cast<std::size_t>(s)], width = b.width(s);
   if (row < first + width) return row - first;
   const int* begin = b.below(s);
@@ -133,7 +133,7 @@ void link_to_parents(Supernodes& b, std::span<const int> block_of_column) {
     b.parent[static_cast<std::size_t>(s)] = parent;
     const auto begin = static_cast<std::size_t>(b.row_starts[static_cast<std::size_t>(s)]);
     for (std::size_t k = 0; k < static_cast<std::size_t>(n_below); ++k)
-      b.in_parent[begin + k] = place_in(b, parent, b.rows[begin + k]);
+      b.in_parent[begin + k] = value_index_in(b, parent, b.rows[begin + k]);
     for (std::size_t k = static_cast<std::size_t>(n_below), end = k; k-- > 0;) {
       b.run_end[begin + k] = static_cast<int>(end);
       if (k > 0 && b.in_parent[begin + k - 1] + 1 != b.in_parent[begin + k]) end = k;
@@ -209,15 +209,15 @@ Supernodes find_supernodes(std::span<const int> starts, std::span<const int> row
   order_families(b);
   measure_stack(b);
 
-  b.place.resize(rows.size());
+  b.value_index.resize(rows.size());
   for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
     const int s = block_of_column[c];
     const auto block = static_cast<std::size_t>(s);
     const std::size_t column = c - static_cast<std::size_t>(b.first[block]);
     for (auto k = static_cast<std::size_t>(starts[c]); k < static_cast<std::size_t>(starts[c + 1]);
          ++k)
-      b.place[k] = b.offset[block] + column * static_cast<std::size_t>(b.height(s)) +
-                   static_cast<std::size_t>(place_in(b, s, rows[k]));
+      b.value_index[k] = b.offset[block] + column * static_cast<std::size_t>(b.height(s)) +
+                         static_cast<std::size_t>(value_index_in(b, s, rows[k]));
   }
   return b;
 }

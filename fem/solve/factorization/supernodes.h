@@ -22,9 +22,9 @@ struct Supernodes {
   /// Block that contains the first row below as a column (n_blocks); -1: no row below, or it
   /// belongs to the border.
   std::vector<int> parent;
-  std::vector<int> order;          ///< Order of computation, depth first: children before parents.
-  std::vector<std::size_t> place;  ///< Index of every entry of the matrix in the values.
-  std::size_t deepest_stack = 0;   ///< Largest number of stored update entries in `order`.
+  std::vector<int> order;  ///< Order of computation, depth first: children before parents.
+  std::vector<std::size_t> value_index;  ///< Index of every entry of the matrix in the values.
+  std::size_t deepest_stack = 0;         ///< Largest number of stored update entries in `order`.
 
   /// Returns the number of blocks.
   int n_blocks() const { return static_cast<int>(parent.size()); }

@@ -29,7 +29,7 @@ inline constexpr int kVectors = 3, kSize = 2 * kVectors;
 inline double root_of(double x) { return std::sqrt(x); }
 /// Returns the square roots of a pack of SIMD lanes.
 template <int kWidth>
-inline LanesOf<kWidth> root_of(LanesOf<kWidth> x) {
+inline PackOf<kWidth> root_of(PackOf<kWidth> x) {
   for (int k = 0; k < kLanes; ++k) x[k] = std::sqrt(x[k]);
   return x;
 }

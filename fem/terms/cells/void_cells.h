@@ -21,14 +21,14 @@ class VoidCells {
     using V = double;  ///< Number type of one cell.
     int lane;          ///< SIMD lane of the cell.
     /// Returns the value of the cell.
-    double operator()(const Lanes& x) const { return x[lane]; }
+    double operator()(const Pack& x) const { return x[lane]; }
   };
   /// Selection of all eight cells.
   template <class Of>
-  struct AllLanes {
+  struct AllPacks {
     using V = Of;  ///< Pack of SIMD lanes.
     /// Returns the values of all cells.
-    const V& operator()(const Lanes& x) const { return *lanes_as<V>(&x); }
+    const V& operator()(const Pack& x) const { return *packs_as<V>(&x); }
   };
 
   /// Returns true if any of the cells is nearly empty.
@@ -43,7 +43,7 @@ class VoidCells {
   }
 
   /// Returns the derivative of solid_part() with respect to the factor.
-  static double solid_slope(double factor) {
+  static double solid_derivative(double factor) {
     if (!(factor > 0)) return 0;
     const double decades = std::log(kMaterial / kVoid), x = std::log(factor / kVoid) / decades;
     return x <= 0 || x >= 1 ? 0 : 30 * x * x * (1 - x) * (1 - x) / (factor * decades);
@@ -66,22 +66,22 @@ class VoidCells {
   /// Fills the SIMD lanes from `count` on with copies of the lane before.
   void fill(int count) {
     for (int lane = count; lane < kLanes; ++lane) {
-      for (Lanes& x : undeformed_) x[lane] = x[count - 1];
+      for (Pack& x : undeformed_) x[lane] = x[count - 1];
       solid_[lane] = solid_[count - 1];
     }
   }
   /// Computes K = Dᵀ W D at the undeformed cells, with W for all pairs: the tangent stiffness of
   /// the undeformed cells. Nothing is stored if all cells are solid.
-  void set_stiffness(const std::vector<Lanes>& w) {
+  void set_stiffness(const std::vector<Pack>& w) {
     stiffness_.clear();
     bool all_solid = true;
     for (int lane = 0; lane < kLanes; ++lane) all_solid &= solid_[lane] >= 1;
     if (all_solid || undeformed_.empty()) return;
     constexpr int n = turned_cell::kVectors, size = turned_cell::kSize;
-    Lanes blocks[n * n * 4] = {};
-    const Lanes none[gram::Numbering<1>::n_pairs] = {};
+    Pack blocks[n * n * 4] = {};
+    const Pack none[gram::Numbering<1>::n_pairs] = {};
     gram::stiffness_of<1, 2, gram::Coupling::all, true>(
-        gram::Different<Lanes>{w.data()}, none, undeformed_.data(), undeformed_.data(), blocks);
+        gram::Different<Pack>{w.data()}, none, undeformed_.data(), undeformed_.data(), blocks);
     stiffness_.resize(size * size);
     for (int i = 0; i < size; ++i)
       for (int j = 0; j < size; ++j) {
@@ -148,9 +148,9 @@ class VoidCells {
   static constexpr double kVoid = 1e-3, kMaterial = 1e-1;
 
   // K of turned_cell.h; empty where all cells are solid
-  std::vector<Lanes> stiffness_;
-  std::vector<Lanes> undeformed_;  // P
-  Lanes solid_{}, factor_{};       // solid_part() of each factor, and the factors
+  std::vector<Pack> stiffness_;
+  std::vector<Pack> undeformed_;  // P
+  Pack solid_{}, factor_{};       // solid_part() of each factor, and the factors
 };
 
 }  // namespace flexmorph::fem

@@ -12,17 +12,17 @@ namespace flexmorph::mmc {
 namespace {
 
 /// Fraction of a required width that counts as reached, because outlines have a tolerance.
-constexpr double kWithin = 0.99;
+constexpr double kWidthTolerance = 0.99;
 
 /// The limits on the cost of the stages of a cycle, in equal shares.
-class Shares {
+class StageBudgets {
  public:
-  Shares(const optim::Settings& settings, int n_stages, int n_shares)
+  StageBudgets(const optim::Settings& settings, int n_stages, int n_shares)
       : settings_(settings), n_stages_(n_stages), n_shares_(n_shares) {}
 
   /// Returns the share of the next stage.
   /// @param stage  index among the stages from one start, from 0
-  Share of(int stage) {
+  StageBudget of(int stage) {
     ++used_;
     const auto until = [&](int k) { return settings_.max_iterations * k / n_stages_; };
     const auto solves =
@@ -32,7 +32,7 @@ class Shares {
   }
 
   /// Returns the first 60 % of a share, after which unloaded components are removed again.
-  Share begin_of(Share share) const {
+  StageBudget begin_of(StageBudget share) const {
     constexpr double kBegin = 0.6;
     const double rest = 1 - kBegin;
     share.iterations = static_cast<int>(kBegin * share.iterations);
@@ -47,19 +47,19 @@ class Shares {
   int n_stages_, n_shares_, used_ = 0;
 };
 
-size_t most_bands(std::span<const Part> parts) {
+size_t most_bands(std::span<const Subproblem> parts) {
   size_t out = 0;
-  for (const Part& p : parts) out = std::max(out, p.problem.bands.size());
+  for (const Subproblem& p : parts) out = std::max(out, p.problem.bands.size());
   return out;
 }
 
 /// Returns the start designs (n_starts x n_bodies); the present designs come first.
-std::vector<std::vector<Design>> starts_of(std::span<const Part> parts, int cycle) {
+std::vector<std::vector<Design>> starts_of(std::span<const Subproblem> parts, int cycle) {
   size_t n = 1;
-  for (const Part& p : parts)
+  for (const Subproblem& p : parts)
     if (cycle == 1) n = std::max(n, 1 + p.problem.further_starts.size());
   std::vector<std::vector<Design>> out(n);
-  for (const Part& p : parts) {
+  for (const Subproblem& p : parts) {
     const std::vector<Design>& further = p.problem.further_starts;
     for (size_t s = 0; s < n; ++s)
       out[s].push_back(s == 0 || further.empty() ? p.problem.design
@@ -76,54 +76,54 @@ struct FromStart {
 
 /// Runs the stages 1 to 4 of design_bodies().
 FromStart staged(StageRunner& run, int cycle) {
-  const std::vector<Part>& parts = run.parts();
-  const bool wide =
-      std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.problem.widths.any(); });
+  const std::vector<Subproblem>& parts = run.parts();
+  const bool wide = std::any_of(parts.begin(), parts.end(),
+                                [](const Subproblem& p) { return p.problem.widths.any(); });
   const auto coarse = static_cast<int>(most_bands(parts)) - 1;
   const int n_stages = coarse + 1 + (wide ? 1 : 0);
   const std::vector<std::vector<Design>> starts = starts_of(parts, cycle);
   const int n_shares =
       static_cast<int>(starts.size()) * (n_stages - (wide ? 1 : 0)) + (wide ? 1 : 0);
-  Shares shares(run.settings().optimizer, n_stages, n_shares);
+  StageBudgets shares(run.settings().optimizer, n_stages, n_shares);
   std::optional<FromStart> best;
-  for (size_t s = 0; s < starts.size() && run.going(); ++s) {
+  for (size_t s = 0; s < starts.size() && run.is_running(); ++s) {
     StageResult now = first_designs(parts);
     now.designs = starts[s];
     for (int band = 0; band < coarse; ++band) {
-      const Share share = shares.of(band);
+      const StageBudget share = shares.of(band);
       if (cycle == 1) now = at_band(run, now, static_cast<size_t>(band), share);
     }
-    const Share share = shares.of(coarse);
+    const StageBudget share = shares.of(coarse);
     now = wide ? with_erosion(run, now, share) : last_stage(run, now, share);
     // A stopped run is incomplete; its result must not replace a complete one.
-    if (!best || (run.going() &&
+    if (!best || (run.is_running() &&
                   is_better(now.result, best->result.result, run.settings().optimizer.feasibility)))
       best = {std::move(now), static_cast<int>(s) + 1};
   }
   StageResult& now = best->result;
-  if (wide && run.going()) {
-    now = without_idle(run, now, false);
-    const Share share = shares.of(n_stages - 1), begin = shares.begin_of(share);
+  if (wide && run.is_running()) {
+    now = without_unloaded_components(run, now, false);
+    const StageBudget share = shares.of(n_stages - 1), begin = shares.begin_of(share);
     now = last_stage(run, now, begin);
     // The constraints on widths cut some bars off. Their dangling ends are removed, and the
     // optimizer uses the material elsewhere.
-    now = without_idle(run, now, false);
+    now = without_unloaded_components(run, now, false);
     now = last_stage(run, now, {share.iterations - begin.iterations, share.solves});
-    now = without_idle(run, now, true);
+    now = without_unloaded_components(run, now, true);
   }
   return *best;
 }
 
 /// Returns the designs as they are, without optimization.
-StageResult evaluated(const std::vector<Part>& parts) {
+StageResult evaluated(const std::vector<Subproblem>& parts) {
   StageResult out = first_designs(parts);
   for (size_t k = 0; k < parts.size(); ++k)
     out.formulations[k] = last_formulation(parts[k].problem);
   out.result.verdict.kind = optim::Verdict::Kind::evaluated;
   // An outline in place of components has no variables, therefore no KKT residual.
-  if (std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.problem.part; }))
+  if (std::any_of(parts.begin(), parts.end(), [](const Subproblem& p) { return p.problem.part; }))
     return out;
-  Whole whole(parts, out.designs, out.formulations);
+  CombinedProblem whole(parts, out.designs, out.formulations);
   optim::Problem& problem = whole.problem();
   const VectorXd x = problem.start();
   // A crisp volume meets its limit only to a thousandth; with this tolerance the limit is active.
@@ -133,12 +133,13 @@ StageResult evaluated(const std::vector<Part>& parts) {
   return out;
 }
 
-std::string stop_words(const StageRunner& run, const optim::Result& result) {
-  if (!run.going()) return "interrupted after " + std::to_string(run.iterations()) + " iterations";
+std::string stop_text(const StageRunner& run, const optim::Result& result) {
+  if (!run.is_running())
+    return "interrupted after " + std::to_string(run.iterations()) + " iterations";
   if (result.verdict.kind == optim::Verdict::Kind::evaluated)
-    return "evaluated: nothing was optimized";
+    return "evaluated: the design was not optimized";
   if (result.stop == optim::Stop::iteration_limit)
-    return "iteration limit: " + std::to_string(run.iterations()) + " iterations, KKT residual " +
+    return "iteration limit: " + std::to_string(run.iterations()) + " iterations; KKT residual " +
            optim::scientific(result.kkt);
   return optim::to_string(result.stop) + (result.message.empty() ? "" : ": " + result.message);
 }
@@ -147,13 +148,13 @@ std::string stop_words(const StageRunner& run, const optim::Result& result) {
 
 bool BodyOutcome::reaches_length_scale() const {
   if (!length_scale) return true;
-  const Widths& wanted = length_scale->wanted;
-  return sharp.connectivity.islands == 0 && sharp.features &&
-         sharp.features->solid >= kWithin * wanted.solid &&
-         sharp.features->gap >= kWithin * wanted.gap;
+  const MinimumWidths& wanted = length_scale->wanted;
+  return crisp.connectivity.islands == 0 && crisp.features &&
+         crisp.features->solid >= kWidthTolerance * wanted.solid &&
+         crisp.features->gap >= kWidthTolerance * wanted.gap;
 }
 
-BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& formulation,
+BodyOutcome outcome_of(const Subproblem& p, const Design& design, const Formulation& formulation,
                        bool condition) {
   BodyOutcome out;
   out.body = p.problem.body;
@@ -167,21 +168,21 @@ BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& f
   out.volume = state.volume();
   for (const ResponseRow* row : further_rows(p.problem.goal))
     out.further[key_of(*row)] = state.values(*row)->maxCoeff();
-  out.sharp = sharp_design(p.problem, design.components(), p.loads);
+  out.crisp = crisp_design(p.problem, design.components(), p.loads);
   out.of_part = p.problem.part.has_value();
   if (out.of_part) {  // an outline has no regularized values
-    out.compliance = out.sharp.compliance;
-    out.volume = out.sharp.volume;
-    out.further = out.sharp.further;
+    out.compliance = out.crisp.compliance;
+    out.volume = out.crisp.volume;
+    out.further = out.crisp.further;
   }
-  const CellFactors sharp = p.ersatz.sharp(out.sharp.fractions);
-  const VectorXd each = p.loads.individual(sharp.stiffness, sharp.mass);
+  const CellScaleFactors crisp = p.ersatz.crisp(out.crisp.fractions);
+  const VectorXd each = p.loads.individual(crisp.stiffness, crisp.mass);
   out.load_compliances.assign(each.data(), each.data() + each.size());
   out.worst_compliance = each.maxCoeff();
   if (condition) out.condition = p.loads.condition();
   // The comparison of the paper: uniform material with the allowed volume (or the crisp volume if
   // none is prescribed).
-  const double volume = allowed_volume(p.problem.goal).value_or(out.sharp.volume);
+  const double volume = allowed_volume(p.problem.goal).value_or(out.crisp.volume);
   const VectorXd even = VectorXd::Constant(p.problem.grid.n_cells(), volume);
   out.uniform_compliance = design_compliance(p.problem, p.loads, {even, even});
   out.full = full_values(p.problem, p.loads);
@@ -194,7 +195,7 @@ BodyOutcome outcome_of(const Part& p, const Design& design, const Formulation& f
 
 std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int cycle,
                                        const DesignSettings& settings,
-                                       const IterationObserver& observe, bool& going) {
+                                       const IterationObserver& observe, bool& is_running) {
   StageRunner run(bodies, cycle, settings, observe);
   const FromStart last = settings.optimizer.max_iterations == 0 ? FromStart{evaluated(run.parts())}
                                                                 : staged(run, cycle);
@@ -208,8 +209,8 @@ std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int c
     o.kkt = now.result.kkt;
     o.change = now.changes[k];
     o.verdict = now.result.verdict;
-    if (!run.going()) o.verdict.kind = optim::Verdict::Kind::unfinished;
-    o.stop = stop_words(run, now.result);
+    if (!run.is_running()) o.verdict.kind = optim::Verdict::Kind::unfinished;
+    o.stop = stop_text(run, now.result);
     o.iterations = run.iterations();
     o.evaluations = run.evaluations();
     if (o.length_scale) {
@@ -217,15 +218,15 @@ std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int c
       o.length_scale->seconds = now.removed[k].seconds;
     }
   }
-  going = run.going();
+  is_running = run.is_running();
   return out;
 }
 
 BodyOutcome design_body(BodyProblem& problem, ComplianceEvaluator& loads, int cycle,
                         const DesignSettings& settings, const IterationObserver& observe,
-                        bool& going) {
+                        bool& is_running) {
   const LoadedBody body{problem, loads};
-  return design_bodies({&body, 1}, cycle, settings, observe, going).front();
+  return design_bodies({&body, 1}, cycle, settings, observe, is_running).front();
 }
 
 }  // namespace flexmorph::mmc

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "optim/evaluation_log.h"
-#include "optim/mmc/cycles/designed_parts.h"
+#include "optim/mmc/cycles/combined_problem.h"
 #include "optim/mmc/problem/body_problem.h"
 #include "optim/optimizer.h"
 
@@ -27,14 +27,14 @@ struct IterationReport {
   const MmcProblem& state;                  ///< Problem of the body with the values at x.
   const ComplianceEvaluator::Value& value;  ///< Compliance at x and its derivatives.
   ComplianceEvaluator& loads;               ///< Loads of the body.
-  const SharpDesign* sharp = nullptr;       ///< Crisp design at x, null if it was not evaluated.
+  const CrispDesign* crisp = nullptr;       ///< Crisp design at x, null if it was not evaluated.
 };
 
 /// Smallest widths that are required of a design, and the removal of components that serves them.
 struct LengthScale {
-  Widths wanted;       ///< Required smallest widths [m].
-  int removed = 0;     ///< Number of unloaded components that were removed.
-  double seconds = 0;  ///< CPU time of the removal [s].
+  MinimumWidths wanted;  ///< Required smallest widths [m].
+  int removed = 0;       ///< Number of unloaded components that were removed.
+  double seconds = 0;    ///< CPU time of the removal [s].
 };
 
 /// The result of the design of one body in one cycle.
@@ -44,7 +44,7 @@ struct BodyOutcome {
   bool of_part = false;  ///< True if BodyProblem::part is the design; all values are then crisp.
   double compliance = 0, volume = 0;  ///< Compliance [J] and volume [-], regularized, last band.
   Figures further;                    ///< Further responses, regularized, last band.
-  SharpDesign sharp;                  ///< Crisp design.
+  CrispDesign crisp;                  ///< Crisp design.
   double worst_compliance = 0;        ///< Largest compliance of a load, crisp design [J].
   double uniform_compliance = 0;      ///< Compliance of uniform material of equal volume [J].
   Figures full;                       ///< Result of full_values() under the loads of the cycle.
@@ -87,14 +87,14 @@ struct Past {
 
 /// Settings of the design of bodies in one cycle.
 struct DesignSettings {
-  int sharp_every = 25;       ///< Iterations between crisp evaluations; 0: only at the end.
+  int crisp_every = 25;       ///< Iterations between crisp evaluations; 0: only at the end.
   optim::Settings optimizer;  ///< Optimizer; max_iterations 0: designs are only evaluated.
   bool condition = false;     ///< True if the condition is estimated (costs a factorization).
   Past* past = nullptr;       ///< Records that are read and continued; null: no records.
 
   /// Cancellation callback between stages (within a stage the observer is called); false stops.
   /// Empty: the run continues.
-  std::function<bool()> go_on = {};
+  std::function<bool()> keep_running = {};
 };
 
 /// A function that is called with every row of the history; it returns false to stop the run after
@@ -116,23 +116,23 @@ using IterationObserver = std::function<bool(const IterationReport&)>;
 /// cycle. If no widths are required, there are only the stages 1 and 2. Every stage has an equal
 /// share of the iterations; it ends at a plateau (optim::Verdict) or when its share is used. On
 /// return the problems hold the resulting designs.
-/// @param going  on return false if the observer stopped the run
+/// @param is_running  on return false if the observer stopped the run
 /// @throws Error (numerical) from statics; rows reported before remain valid. Error (input) from
 ///         SharedProblem.
 ///
 /// Source: optim/README.md, Stages.
 std::vector<BodyOutcome> design_bodies(std::span<const LoadedBody> bodies, int cycle,
                                        const DesignSettings& settings,
-                                       const IterationObserver& observe, bool& going);
+                                       const IterationObserver& observe, bool& is_running);
 /// Designs one body under given loads, see design_bodies().
 BodyOutcome design_body(BodyProblem& problem, ComplianceEvaluator& loads, int cycle,
                         const DesignSettings& settings, const IterationObserver& observe,
-                        bool& going);
+                        bool& is_running);
 
 /// Returns the outcome of a design under its loads, without the members that the optimizer
 /// provides.
 /// @param condition  true if the condition of the stiffness matrix is estimated
-BodyOutcome outcome_of(const Part& part, const Design& design, const Formulation& formulation,
+BodyOutcome outcome_of(const Subproblem& part, const Design& design, const Formulation& formulation,
                        bool condition);
 
 }  // namespace flexmorph::mmc

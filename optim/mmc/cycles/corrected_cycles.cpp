@@ -20,13 +20,13 @@ namespace {
 class Corrected final : public optim::Problem {
  public:
   /// Properties of the motion at the centre of the trust region.
-  struct Seen {
+  struct DesignView {
     VectorXd correction;  ///< Correction of the gradient, ∇log J - ∇log C (n).
     MatrixXd root;        ///< Matrix R of the curvature R Rᵀ that C lacks (n x rank).
     VectorXd limits;      ///< Limits of the motion, <= 0 (m).
     MatrixXd slopes;      ///< Gradients of the limits (m x n).
   };
-  Corrected(optim::Problem& loaded, const VectorXd& x, double log_compliance, Seen seen,
+  Corrected(optim::Problem& loaded, const VectorXd& x, double log_compliance, DesignView seen,
             double radius)
       : loaded_(loaded),
         x_(x),
@@ -47,8 +47,8 @@ class Corrected final : public optim::Problem {
     return loaded_.upper().cwiseMin((x_.array() + radius_).matrix());
   }
   VectorXd start() const override { return x_; }
-  optim::Response evaluate(const VectorXd& x) override {
-    optim::Response out = loaded_.evaluate(x);
+  optim::ProblemValues evaluate(const VectorXd& x) override {
+    optim::ProblemValues out = loaded_.evaluate(x);
     const double part = std::exp(out.f - log_compliance_);
     const VectorXd bent = seen_.root.transpose() * (x - x_);
     out.f = part + seen_.correction.dot(x - x_) + 0.5 * bent.squaredNorm();
@@ -66,7 +66,7 @@ class Corrected final : public optim::Problem {
   optim::Problem& loaded_;
   VectorXd x_;
   double log_compliance_;
-  Seen seen_;
+  DesignView seen_;
   double radius_;
 };
 
@@ -94,9 +94,10 @@ class Secants {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (product + product.transpose()));
     MatrixXd out(n, 0);
     for (Eigen::Index k = 0; k < m; ++k) {
-      constexpr double kNone = 1e-8;  // relative to the largest; below, the curvature is unknown
+      constexpr double kNoCurvature =
+          1e-8;  // relative to the largest; below, the curvature is unknown
       const double value = eigen.eigenvalues()[k];
-      if (!(value > kNone * eigen.eigenvalues().cwiseAbs().maxCoeff())) continue;
+      if (!(value > kNoCurvature * eigen.eigenvalues().cwiseAbs().maxCoeff())) continue;
       out.conservativeResize(n, out.cols() + 1);
       out.col(out.cols() - 1) = Y * eigen.eigenvectors().col(k) / std::sqrt(value);
     }
@@ -124,8 +125,8 @@ class Corrector {
     renew_loads();
     const double first = look().kkt;
     radius_ = settings_.radius;
-    for (int cycle = 1; cycle <= settings_.max_cycles && going_; ++cycle) {
-      if (now_.kkt <= settings_.kkt_part * first || radius_ < settings_.smallest_radius) break;
+    for (int cycle = 1; cycle <= settings_.max_cycles && is_running_; ++cycle) {
+      if (now_.kkt <= settings_.kkt_reduction * first || radius_ < settings_.smallest_radius) break;
       if (step(cycle)) renew_loads();
     }
   }
@@ -136,11 +137,11 @@ class Corrector {
     look();
     if (settings_.max_cycles == 0) return;
     MotionState state = motion_state_of(parts_, motion_);
-    Whole moved(parts_, designs_of(parts_), formulations_, state);
+    CombinedProblem moved(parts_, designs_of(parts_), formulations_, state);
     optim::Settings settings = settings_.optimizer;
     settings.max_iterations = settings_.max_cycles;
     settings.max_evaluations = 0;
-    settings.kkt_tolerance = settings_.kkt_part * now_.kkt;
+    settings.kkt_tolerance = settings_.kkt_reduction * now_.kkt;
     VectorXd best = moved.problem().start();
     double least = now_.value;
     const auto watch = [&](const optim::Iterate& iterate) {
@@ -177,15 +178,16 @@ class Corrector {
   const CorrectedCycle& look() {
     MotionState state = motion_state_of(parts_, motion_);
     const std::vector<Design> designs = designs_of(parts_);
-    Whole moved(parts_, designs, formulations_, state),
-        loaded = Whole::smooth(parts_, designs, formulations_);
+    CombinedProblem moved(parts_, designs, formulations_, state),
+        loaded = CombinedProblem::smooth(parts_, designs, formulations_);
     take(moved.problem().start(), moved.problem().evaluate(moved.problem().start()), moved, loaded);
     now_.radius = settings_.radius;
     report();
     return now_;
   }
 
-  void take(const VectorXd& x, const optim::Response& r, Whole& moved, Whole& loaded) {
+  void take(const VectorXd& x, const optim::ProblemValues& r, CombinedProblem& moved,
+            CombinedProblem& loaded) {
     here_ = r;
     now_.value = std::exp(r.f);
     now_.kkt =
@@ -195,7 +197,7 @@ class Corrector {
   }
 
   /// Returns the constraint rows of the limits of the motion.
-  std::vector<int> limit_rows(const Whole& moved) const {
+  std::vector<int> limit_rows(const CombinedProblem& moved) const {
     std::vector<int> out;
     for (size_t b = 0; b < parts_.size(); ++b) {
       const std::vector<Limit>& limits = parts_[b].problem.motion_goal.limits;
@@ -208,30 +210,32 @@ class Corrector {
   bool report() {
     now_.motions = motion_.motions();
     now_.seconds = cpu_seconds() - begin_;
-    if (see_ && !see_(now_)) going_ = false;
-    return going_;
+    if (see_ && !see_(now_)) is_running_ = false;
+    return is_running_;
   }
 
-  void move_to(const Whole& whole, const VectorXd& x) {
+  void move_to(const CombinedProblem& whole, const VectorXd& x) {
     const std::vector<Design> designs = whole.designs_at(x);
     for (size_t k = 0; k < parts_.size(); ++k) parts_[k].problem.design = designs[k];
   }
 
   /// Returns the largest violation at the present design. It may be positive although the design
   /// was accepted, because the crisp volume is recomputed afterwards.
-  static double missed_at(const optim::Response& here) { return std::max(0.0, here.g.maxCoeff()); }
+  static double missed_at(const optim::ProblemValues& here) {
+    return std::max(0.0, here.g.maxCoeff());
+  }
 
   /// Solves the static problem with the gradient of the motion within the radius. If the optimizer
   /// finds no better design, the radius is reduced; this takes no motion. Violations of the minimum
   /// length scale appear and disappear discontinuously: a design close to such a discontinuity has
   /// no better neighbour that satisfies all limits. In this case the best design with a small
   /// violation is the step, and the following cycles restore its feasibility.
-  optim::Result best_within(optim::Problem& loaded, const VectorXd& x, const optim::Response& here,
-                            const Whole& moved) {
-    constexpr double kLittle = 3e-3;  // largest violation g; 0.3 % of a volume
+  optim::Result best_within(optim::Problem& loaded, const VectorXd& x,
+                            const optim::ProblemValues& here, const CombinedProblem& moved) {
+    constexpr double kConstraintTolerance = 3e-3;  // largest violation g; 0.3 % of a volume
     const std::vector<int> limits = limit_rows(moved);
-    const Corrected::Seen seen{here_.df - here.df, secants_.root(x.size()), here_.g(limits),
-                               here_.dg(limits, Eigen::all)};
+    const Corrected::DesignView seen{here_.df - here.df, secants_.root(x.size()), here_.g(limits),
+                                     here_.dg(limits, Eigen::all)};
     const double first = radius_;
     std::optional<optim::Result> forgiven;  // best one with a small violation, first radius
     for (;; radius_ *= 0.5) {
@@ -243,7 +247,8 @@ class Corrector {
       inner.kkt_tolerance = std::min(inner.kkt_tolerance, 0.1 * now_.kkt);
       const auto watch = [&](const optim::Iterate& iterate) {
         const double least = forgiven ? forgiven->response.f : 1;
-        if (radius_ < first || iterate.violation > kLittle || !(iterate.response->f < least))
+        if (radius_ < first || iterate.violation > kConstraintTolerance ||
+            !(iterate.response->f < least))
           return true;
         forgiven.emplace();
         forgiven->x = *iterate.x;
@@ -263,23 +268,24 @@ class Corrector {
 
   /// Runs one cycle of first order. @return true if its design was accepted
   bool step(int cycle) {
-    constexpr double kTaken = 0.1, kGood = 0.75, kPoor = 0.25, kMissed = 1e-5;
+    constexpr double kMinAcceptedRatio = 0.1, kGoodRatio = 0.75, kPoorRatio = 0.25,
+                     kMaxDifference = 1e-5;
     MotionState state = motion_state_of(parts_, motion_);
     const std::vector<Design> designs = designs_of(parts_);
-    Whole moved(parts_, designs, formulations_, state),
-        loaded = Whole::smooth(parts_, designs, formulations_);
+    CombinedProblem moved(parts_, designs, formulations_, state),
+        loaded = CombinedProblem::smooth(parts_, designs, formulations_);
     const VectorXd x = loaded.problem().start();
-    const optim::Response here = loaded.problem().evaluate(x);
+    const optim::ProblemValues here = loaded.problem().evaluate(x);
     const optim::Result found = best_within(loaded.problem(), x, here, moved);
     now_.cycle = cycle;
     now_.radius = radius_;
     now_.predicted = 1 - found.response.f;
     now_.actual = -std::numeric_limits<double>::infinity();
-    optim::Response there;
+    optim::ProblemValues there;
     try {
       there = moved.problem().evaluate(found.x);
       now_.actual = 1 - std::exp(there.f - here_.f);
-      const optim::Response loaded_there = loaded.problem().evaluate(found.x);
+      const optim::ProblemValues loaded_there = loaded.problem().evaluate(found.x);
       secants_.add(found.x - x,
                    std::exp(there.f - here_.f) * there.df - here_.df -
                        (std::exp(loaded_there.f - here.f) * loaded_there.df - here.df));
@@ -287,14 +293,15 @@ class Corrector {
       if (error.kind() != Error::Kind::numerical) throw;
     }
     const double missed = missed_at(here);
-    const bool restores = now_.predicted <= 0 && missed > kMissed && std::isfinite(now_.actual) &&
-                          found.violation < 0.5 * missed && now_.actual > -10 * missed;
+    const bool restores = now_.predicted <= 0 && missed > kMaxDifference &&
+                          std::isfinite(now_.actual) && found.violation < 0.5 * missed &&
+                          now_.actual > -10 * missed;
     const double ratio = now_.predicted > 0 ? now_.actual / now_.predicted : -1;
     const bool at_edge = (found.x - x).lpNorm<Eigen::Infinity>() > 0.99 * radius_;
-    now_.accepted = ratio >= kTaken || restores;
-    if (ratio < kPoor && !restores)
+    now_.accepted = ratio >= kMinAcceptedRatio || restores;
+    if (ratio < kPoorRatio && !restores)
       radius_ *= 0.5;
-    else if (ratio > kGood && at_edge)
+    else if (ratio > kGoodRatio && at_edge)
       radius_ *= 2;
     if (now_.accepted) {
       take(found.x, there, moved, loaded);
@@ -310,13 +317,13 @@ class Corrector {
   const CorrectionSettings& settings_;
   const SeeCycle& see_;
   std::vector<std::unique_ptr<ComplianceEvaluator>> responses_;
-  std::vector<Part> parts_;
+  std::vector<Subproblem> parts_;
   std::vector<Formulation> formulations_;
   CorrectedCycle now_;
   Secants secants_;
-  optim::Response here_;  // response of the motion at the present design
+  optim::ProblemValues here_;  // response of the motion at the present design
   double radius_ = 0, begin_ = cpu_seconds();
-  bool going_ = true;
+  bool is_running_ = true;
 };
 
 }  // namespace
@@ -334,7 +341,7 @@ void correct_designs(std::vector<BodyProblem>& problems, const LoadsAt& loads,
 std::vector<BodyOutcome> outcomes_of_corrected(std::span<const LoadedBody> bodies) {
   std::vector<BodyOutcome> out;
   for (const LoadedBody& body : bodies) {
-    const Part part(body);
+    const Subproblem part(body);
     const Design& design = body.problem.design;
     out.push_back(outcome_of(part, design, last_formulation(body.problem), false));
   }

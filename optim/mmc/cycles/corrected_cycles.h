@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "optim/mmc/cycles/body_design.h"
-#include "optim/mmc/cycles/motion_certificate.h"
+#include "optim/mmc/cycles/optimality_certificate.h"
 
 namespace flexmorph::mmc {
 
@@ -23,9 +23,9 @@ struct CorrectionSettings {
   int inner_iterations = 40;           ///< Largest number of iterations in the problem of a cycle.
   double radius = 0.05;                ///< First radius of the trust region, scaled variables [-].
   double smallest_radius = 1e-4;       ///< Radius below which the cycles end [-].
-  int secants = 10;           ///< Number of pairs of designs that give the curvature; 0: none.
-  double kkt_part = 1e-2;     ///< Fraction of the first KKT residual at which it has converged.
-  optim::Settings optimizer;  ///< Optimizer of the static problems, or of the motion if direct.
+  int secants = 10;             ///< Number of pairs of designs that give the curvature; 0: none.
+  double kkt_reduction = 1e-2;  ///< Fraction of the first KKT residual at which it has converged.
+  optim::Settings optimizer;    ///< Optimizer of the static problems, or of the motion if direct.
 };
 
 /// A row of the history of corrected cycles: a cycle, or an iteration of a direct run.

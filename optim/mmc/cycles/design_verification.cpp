@@ -14,8 +14,8 @@ double point_reach(const BodyProblem& problem) {
 
 std::string reason_not_verifiable(const BodyProblem& problem) {
   if (problem.compliance.loads != LoadDefinition::inertia)
-    return "its loads are forces at the corners of cells: only esl.definition = \"inertia\" is "
-           "carried over to an outline";
+    return "its loads are forces at the nodes of the design mesh, which cannot be transferred to "
+           "an outline; set esl.definition = \"inertia\"";
   return "";
 }
 
@@ -101,7 +101,7 @@ verification::OutlineVerification verify_design(const BodyProblem& problem,
                                                 const verification::Loads& loads,
                                                 const std::function<bool()>& keep_running) {
   constexpr double kFirst = 2;  // cells; this is the width of the thinnest bars
-  verification::Settings settings;
+  verification::VerificationSettings settings;
   settings.size = kFirst * point_reach(problem);
   settings.reach = point_reach(problem);
   settings.keep_running = keep_running;

@@ -32,13 +32,13 @@ std::vector<std::vector<size_t>> groups_of(const std::vector<BodyProblem>& probl
 /// The design of a body before the cycle, with its static energies under the loads of the cycle.
 struct Start {
   VectorXd fractions;
-  CellFactors factors;
+  CellScaleFactors factors;
   std::unique_ptr<ComplianceEvaluator> compliance;
   VectorXd energies;
 
   Start(const BodyProblem& p, const fem::EslSets& loads)
       : fractions(part_fractions(p, p.design.components())),
-        factors(ersatz_of(p).sharp(fractions)),
+        factors(ersatz_of(p).crisp(fractions)),
         compliance(std::make_unique<ComplianceEvaluator>(loads, p.section, p.compliance,
                                                          factors.stiffness, factors.mass)),
         energies(compliance->individual(factors.stiffness, factors.mass)) {}
@@ -52,12 +52,12 @@ class CycleDesigner {
 
   /// Designs all bodies. @return false if the observer stopped the run
   bool go(int cycle, const LoopSettings& settings, const LoopObserver& observer) {
-    bool going = true;
+    bool is_running = true;
     for (const std::vector<size_t>& group : groups_of(problems_)) {
-      design(group, cycle, settings, observer, going);
-      if (!going) break;
+      design(group, cycle, settings, observer, is_running);
+      if (!is_running) break;
     }
-    return going;
+    return is_running;
   }
 
   /// Returns the outcomes of the bodies up to the first one that has none.
@@ -72,7 +72,7 @@ class CycleDesigner {
 
  private:
   void design(const std::vector<size_t>& group, int cycle, const LoopSettings& settings,
-              const LoopObserver& observer, bool& going) {
+              const LoopObserver& observer, bool& is_running) {
     std::vector<std::unique_ptr<Start>> starts;
     std::vector<LoadedBody> bodies;
     for (const size_t i : group) {
@@ -80,14 +80,14 @@ class CycleDesigner {
       bodies.push_back({problems_[i], *starts.back()->compliance});
     }
     std::vector<BodyOutcome> found =
-        design_bodies(bodies, cycle, settings.design, observer.iteration, going);
+        design_bodies(bodies, cycle, settings.design, observer.iteration, is_running);
     for (size_t k = 0; k < group.size(); ++k) {
       BodyOutcome& outcome = outcomes_[group[k]].emplace(std::move(found[k]));
       const std::vector<fem::EslSet>& sets = loads_[group[k]].sets;
       for (size_t l = 0; l < sets.size(); ++l)
         outcome.energy_ratios.push_back(0.5 * starts[k]->energies[static_cast<Eigen::Index>(l)] /
                                         sets[l].strain_energy);
-      outcome.design_change = (outcome.sharp.fractions - starts[k]->fractions).cwiseAbs().sum() /
+      outcome.design_change = (outcome.crisp.fractions - starts[k]->fractions).cwiseAbs().sum() /
                               ersatz_of(problems_[group[k]]).n_domain_cells();
     }
   }
@@ -97,8 +97,8 @@ class CycleDesigner {
   std::vector<std::optional<BodyOutcome>> outcomes_;
 };
 
-std::vector<fem::Factors> factors_of(const std::vector<BodyProblem>& problems) {
-  std::vector<fem::Factors> out;
+std::vector<fem::ScaleFactors> factors_of(const std::vector<BodyProblem>& problems) {
+  std::vector<fem::ScaleFactors> out;
   for (const BodyProblem& p : problems) out.push_back(dynamic_factors(p, p.design.components()));
   return out;
 }
@@ -113,8 +113,8 @@ class Verdicts {
     for (size_t k = 0; k < outcome.size(); ++k) {
       const BodyOutcome& o = outcome[k];
       v.objective += o.compliance;
-      v.violation = std::max(v.violation, crisp_violation(problems[k], o.sharp));
-      v.bodies.push_back({o.body, o.compliance, o.sharp.compliance, o.design_change});
+      v.violation = std::max(v.violation, crisp_violation(problems[k], o.crisp));
+      v.bodies.push_back({o.body, o.compliance, o.crisp.compliance, o.design_change});
     }
     outcomes_.push_back(outcome);
     auto& designs = designs_.emplace_back();
@@ -173,7 +173,7 @@ class Loop {
       if (!design(cycle, motion.loads)) return outcome_;
       if (settings_.max_cycles == 1) return outcome_;
       const bool last = cycle == settings_.max_cycles;
-      const std::vector<fem::Factors> factors = factors_of(problems_);
+      const std::vector<fem::ScaleFactors> factors = factors_of(problems_);
       if (settings_.verification_motion) record(settings_.verification_motion(factors));
       if (settings_.verification_motion && (last || !verdicts_.improved(settings_.tolerance)))
         break;
@@ -189,11 +189,11 @@ class Loop {
   /// Runs the design of a cycle. @return false if the observer stopped the run
   bool design(int cycle, const std::vector<fem::EslSets>& loads) {
     CycleDesigner designer(problems_, loads);
-    const bool going = designer.go(cycle, settings_, observer_);
+    const bool is_running = designer.go(cycle, settings_, observer_);
     outcome_ = designer.outcomes();
     if (observer_.cycle) observer_.cycle(cycle, outcome_);
-    if (going) verdicts_.add(cycle, problems_, outcome_);
-    return going;
+    if (is_running) verdicts_.add(cycle, problems_, outcome_);
+    return is_running;
   }
 
   void record(double measure) {

@@ -19,16 +19,16 @@ struct CycleMotion {
 
 /// A function that computes a motion of the mechanism with given scale factors (one entry per
 /// problem).
-using Simulate = std::function<CycleMotion(std::span<const fem::Factors>)>;
+using Simulate = std::function<CycleMotion(std::span<const fem::ScaleFactors>)>;
 
 /// A function that returns the measure of a motion with given scale factors on a finer model than
 /// the one that gives the loads (fem/README.md, Cells).
-using VerificationMotion = std::function<double(std::span<const fem::Factors>)>;
+using VerificationMotion = std::function<double(std::span<const fem::ScaleFactors>)>;
 
 /// The result of a cycle for one body.
 struct BodyVerdict {
   std::string body;                             ///< Name of the body.
-  double compliance = 0, sharp_compliance = 0;  ///< Regularized and crisp compliance [J].
+  double compliance = 0, crisp_compliance = 0;  ///< Regularized and crisp compliance [J].
 
   /// Fraction of the domain whose material changed: mean |Δ| of the crisp area fractions between
   /// the designs before and after the cycle. (The largest change of a cell would be 1 as soon as an

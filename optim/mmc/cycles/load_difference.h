@@ -26,7 +26,7 @@ struct LoadDifference {
   static constexpr double kLargest = 0.2;
   /// Fraction of the largest energy below which a load keeps the stiffness at small displacements,
   /// because the motion passes through the undeformed state there.
-  static constexpr double kLeast = 0.01;
+  static constexpr double kMinimum = 0.01;
 
   std::string body;  ///< Name of the body.
   double loads = 0;  ///< Fraction of the energy by which the loads differ [-].

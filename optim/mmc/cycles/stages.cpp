@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "geometry/cpu_time.h"
-#include "optim/mmc/length_scale/idle_components.h"
+#include "optim/mmc/length_scale/unloaded_components.h"
 
 namespace flexmorph::mmc {
 namespace {
@@ -27,15 +27,15 @@ StageRunner::StageRunner(std::span<const LoadedBody> bodies, int cycle,
     : parts_(bodies.begin(), bodies.end()), cycle_(cycle), settings_(settings), observe_(observe) {}
 
 StageResult StageRunner::optimize(const StageResult& from, std::vector<Formulation> formulations,
-                                  const Share& share) {
-  if (share.iterations <= 0 || !going_ || (share.solves > 0 && evaluations_ >= share.solves))
+                                  const StageBudget& share) {
+  if (share.iterations <= 0 || !is_running_ || (share.solves > 0 && evaluations_ >= share.solves))
     return from;
   optim::Settings settings = settings_.optimizer;
   settings.max_iterations = share.iterations;
   settings.plateau = true;
   if (share.gentle) begin_gently(settings);
   settings.max_evaluations = share.solves > 0 ? share.solves - evaluations_ : 0;
-  Whole whole(parts_, from.designs, formulations);
+  CombinedProblem whole(parts_, from.designs, formulations);
   std::optional<optim::RecordedProblem> recorded;
   if (settings_.past) recorded.emplace(whole.problem(), settings_.past->log);
   optim::Problem& problem = recorded ? *recorded : whole.problem();
@@ -51,76 +51,79 @@ StageResult StageRunner::optimize(const StageResult& from, std::vector<Formulati
   return out;
 }
 
-bool StageRunner::see(Whole& whole, const optim::Iterate& iterate) {
+bool StageRunner::see(CombinedProblem& whole, const optim::Iterate& iterate) {
   ++iterations_;
   for (size_t k = 0; k < parts_.size(); ++k) {
     MmcProblem& state = whole.states[k];
     const VectorXd x = whole.part_of(*iterate.x, k);
     // The state belongs to a later trial, or the evaluation came from the log.
-    if (state.x().size() != x.size() || state.x() != x) state.recall(x);
+    if (state.x().size() != x.size() || state.x() != x) state.restore(x);
     see(parts_[k], state, iterate, k == 0);
   }
-  return going_;
+  return is_running_;
 }
 
-void StageRunner::see(const Part& p, MmcProblem& state, const optim::Iterate& iterate, bool first) {
+void StageRunner::see(const Subproblem& p, MmcProblem& state, const optim::Iterate& iterate,
+                      bool first) {
   const Past* past = settings_.past;
   if (past && past->log.knew_last() && past->has_row({p.problem.body, cycle_, iterations_})) return;
   if (!state.is_solved()) state.evaluate(VectorXd(state.x()));
-  SharpDesign sharp;
-  const bool wanted = settings_.sharp_every > 0 && iterations_ % settings_.sharp_every == 0;
-  if (wanted) sharp = sharp_design(p.problem, state.components(), p.loads);
+  CrispDesign crisp;
+  const bool wanted = settings_.crisp_every > 0 && iterations_ % settings_.crisp_every == 0;
+  if (wanted) crisp = crisp_design(p.problem, state.components(), p.loads);
   optim::Iterate own = iterate;
   own.x = &state.x();
   if (!first) own.seconds = 0;
   if (observe_ && !observe_({p.problem, cycle_, iterations_, evaluations_ + iterate.evaluations,
-                             own, state, state.value(), p.loads, wanted ? &sharp : nullptr}))
-    going_ = false;
+                             own, state, state.value(), p.loads, wanted ? &crisp : nullptr}))
+    is_running_ = false;
   state.clear_seconds();
 }
 
-StageResult first_designs(std::span<const Part> parts) {
+StageResult first_designs(std::span<const Subproblem> parts) {
   StageResult out;
   out.designs = designs_of(parts);
-  for (const Part& p : parts) out.formulations.push_back(eroded(p.problem));
+  for (const Subproblem& p : parts) out.formulations.push_back(eroded(p.problem));
   out.changes.assign(parts.size(), 0);
   out.removed.assign(parts.size(), {});
   return out;
 }
 
-StageResult at_band(StageRunner& run, const StageResult& from, size_t band, const Share& share) {
+StageResult at_band(StageRunner& run, const StageResult& from, size_t band,
+                    const StageBudget& share) {
   size_t most = 0;
-  for (const Part& p : run.parts()) most = std::max(most, p.problem.bands.size());
+  for (const Subproblem& p : run.parts()) most = std::max(most, p.problem.bands.size());
   std::vector<Formulation> formulations;
-  for (const Part& p : run.parts())
+  for (const Subproblem& p : run.parts())
     formulations.push_back(nominal(p.problem, band * p.problem.bands.size() / most));
   return run.optimize(from, std::move(formulations), share);
 }
 
-StageResult with_erosion(StageRunner& run, const StageResult& from, const Share& share) {
+StageResult with_erosion(StageRunner& run, const StageResult& from, const StageBudget& share) {
   std::vector<Formulation> formulations;
-  for (const Part& p : run.parts()) formulations.push_back(eroded(p.problem));
+  for (const Subproblem& p : run.parts()) formulations.push_back(eroded(p.problem));
   return run.optimize(from, std::move(formulations), {share.iterations, share.solves, true});
 }
 
-StageResult without_idle(StageRunner& run, const StageResult& from, bool keeps_width) {
+StageResult without_unloaded_components(StageRunner& run, const StageResult& from,
+                                        bool keeps_width) {
   StageResult out = from;
   for (size_t k = 0; k < run.parts().size(); ++k) {
-    const Part& p = run.parts()[k];
+    const Subproblem& p = run.parts()[k];
     // A goal without responses of the loads does not tell which components are loaded.
-    if (!p.problem.widths.any() || !asks_state(p.problem.goal) || !run.goes_on()) continue;
+    if (!p.problem.widths.any() || !asks_state(p.problem.goal) || !run.keeps_running()) continue;
     const double begin = cpu_seconds();
-    const std::vector<int> removed =
-        remove_idle(p.problem, p.loads, out.designs[k], keeps_width, [&] { return run.goes_on(); });
+    const std::vector<int> removed = remove_unloaded_components(
+        p.problem, p.loads, out.designs[k], keeps_width, [&] { return run.keeps_running(); });
     out.removed[k].components += static_cast<int>(removed.size());
     out.removed[k].seconds += cpu_seconds() - begin;
   }
   return out;
 }
 
-StageResult last_stage(StageRunner& run, const StageResult& from, const Share& share) {
+StageResult last_stage(StageRunner& run, const StageResult& from, const StageBudget& share) {
   std::vector<Formulation> formulations;
-  for (const Part& p : run.parts()) formulations.push_back(last_formulation(p.problem));
+  for (const Subproblem& p : run.parts()) formulations.push_back(last_formulation(p.problem));
   const bool gentle = std::any_of(formulations.begin(), formulations.end(),
                                   [](const Formulation& f) { return f.outline.has_value(); });
   return run.optimize(from, std::move(formulations), {share.iterations, share.solves, gentle});

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "optim/mmc/cycles/body_design.h"
-#include "optim/mmc/cycles/designed_parts.h"
+#include "optim/mmc/cycles/combined_problem.h"
 
 /// The stages of a design: each stage is a function from a design state to a design state.
 namespace flexmorph::mmc {
@@ -25,7 +25,7 @@ struct StageResult {
 };
 
 /// The limits on the cost of a stage.
-struct Share {
+struct StageBudget {
   int iterations = 0;   ///< Largest number of iterations.
   int solves = 0;       ///< Number of state solves of the cycle at which it ends; 0: no limit.
   bool gentle = false;  ///< True if the stage begins with small steps.
@@ -40,52 +40,56 @@ class StageRunner {
               const IterationObserver& observe);
 
   /// Returns the bodies with the data that all their designs use.
-  const std::vector<Part>& parts() const { return parts_; }
+  const std::vector<Subproblem>& parts() const { return parts_; }
   /// Returns the settings of the design.
   const DesignSettings& settings() const { return settings_; }
   /// Returns false if the observer has stopped the run.
-  bool going() const { return going_; }
+  bool is_running() const { return is_running_; }
   /// Returns the number of iterations of the cycle so far.
   int iterations() const { return iterations_; }
   /// Returns the number of evaluations in the finished optimizations of the cycle.
   int evaluations() const { return evaluations_; }
   /// Returns false if the observer or the cancellation callback has stopped the run.
-  bool goes_on() const { return going_ && (!settings_.go_on || settings_.go_on()); }
+  bool keeps_running() const {
+    return is_running_ && (!settings_.keep_running || settings_.keep_running());
+  }
 
   /// Optimizes the designs of `from` once.
   /// @return its best designs; `from` if the run has stopped or its share is used up
   StageResult optimize(const StageResult& from, std::vector<Formulation> formulations,
-                       const Share& share);
+                       const StageBudget& share);
 
  private:
-  bool see(Whole& whole, const optim::Iterate& iterate);
-  void see(const Part& part, MmcProblem& state, const optim::Iterate& iterate, bool first);
+  bool see(CombinedProblem& whole, const optim::Iterate& iterate);
+  void see(const Subproblem& part, MmcProblem& state, const optim::Iterate& iterate, bool first);
 
-  std::vector<Part> parts_;
+  std::vector<Subproblem> parts_;
   int cycle_;
   const DesignSettings& settings_;
   const IterationObserver& observe_;
   int iterations_ = 0, evaluations_ = 0;
-  bool going_ = true;
+  bool is_running_ = true;
 };
 
 /// Returns the present designs of the problems as a stage result.
-StageResult first_designs(std::span<const Part> parts);
+StageResult first_designs(std::span<const Subproblem> parts);
 
 /// Optimizes with nominal stiffness at a band of the continuation.
 /// @param band  index of the band for the body with most bands; bodies with fewer bands use each of
 ///              them for several indices
-StageResult at_band(StageRunner& run, const StageResult& from, size_t band, const Share& share);
+StageResult at_band(StageRunner& run, const StageResult& from, size_t band,
+                    const StageBudget& share);
 /// Optimizes at the last band with the stiffness of the eroded design, which closes slits.
-StageResult with_erosion(StageRunner& run, const StageResult& from, const Share& share);
+StageResult with_erosion(StageRunner& run, const StageResult& from, const StageBudget& share);
 /// Removes unloaded components from the bodies whose widths are limited. Void has no gradient,
 /// therefore later stages would not remove these components.
 /// @param keeps_width  true if no removal may reduce widths, because no later stage would restore
-///                     them, see remove_idle()
-StageResult without_idle(StageRunner& run, const StageResult& from, bool keeps_width);
+///                     them, see remove_unloaded_components()
+StageResult without_unloaded_components(StageRunner& run, const StageResult& from,
+                                        bool keeps_width);
 /// Optimizes with last_formulation(): widths are constraints from the first iteration, and all
 /// limits apply to the crisp design.
-StageResult last_stage(StageRunner& run, const StageResult& from, const Share& share);
+StageResult last_stage(StageRunner& run, const StageResult& from, const StageBudget& share);
 
 /// Tells whether result a is at least as good as result b: a feasible result is better than an
 /// infeasible one; then the objective decides, or the violation if both are infeasible.

@@ -5,7 +5,7 @@
 
 namespace flexmorph::mmc {
 
-double crisp_value(const ResponseRow& row, const Goal& goal, const SharpDesign& crisp) {
+double crisp_value(const ResponseRow& row, const Goal& goal, const CrispDesign& crisp) {
   if (&row == &kVolume) return crisp.volume;
   if (&row == &compliance_row(goal)) return crisp.compliance;
   return crisp.further.at(key_of(row));
@@ -15,7 +15,7 @@ bool binds_body(const Limit& limit, const BodyProblem& problem) {
   return !(problem.shares_mass && limit.volume && !limit.at_least);
 }
 
-double crisp_violation(const BodyProblem& problem, const SharpDesign& crisp) {
+double crisp_violation(const BodyProblem& problem, const CrispDesign& crisp) {
   if (!crisp.connectivity.loose_loads.empty()) return std::numeric_limits<double>::infinity();
   double out = 0;
   for (const Limit& limit : problem.goal.limits)
@@ -26,7 +26,7 @@ double crisp_violation(const BodyProblem& problem, const SharpDesign& crisp) {
 
 bool worse_than_uniform(const BodyProblem& problem, const BodyOutcome& outcome) {
   return problem.goal.objective == &compliance_row(problem.goal) &&
-         outcome.sharp.compliance > outcome.uniform_compliance;
+         outcome.crisp.compliance > outcome.uniform_compliance;
 }
 
 }  // namespace flexmorph::mmc

@@ -6,7 +6,7 @@ namespace flexmorph::mmc {
 namespace {
 
 /// Number of stored lists of components.
-constexpr size_t kKnown = 3;
+constexpr size_t kCachedUnions = 3;
 
 bool same(const Component& a, const Component& b) { return a.parameters() == b.parameters(); }
 
@@ -32,7 +32,7 @@ CrispUnion::CrispUnion(const BodyProblem& problem, ComplianceEvaluator& loads)
 CrispUnion::Known& CrispUnion::known(const std::vector<Component>& of) {
   for (Known& k : known_)
     if (std::equal(k.of.begin(), k.of.end(), of.begin(), of.end(), same)) return k;
-  if (known_.size() == kKnown) known_.pop_back();
+  if (known_.size() == kCachedUnions) known_.pop_back();
   return known_.emplace_front(Known{of, {}, {}});
 }
 
@@ -57,7 +57,7 @@ const VectorXd& CrispUnion::fractions(const std::vector<Component>& of) {
 }
 
 double CrispUnion::compliance(const std::vector<Component>& of) {
-  return design_compliance(problem_, loads_, ersatz_.sharp(fractions(of)));
+  return design_compliance(problem_, loads_, ersatz_.crisp(fractions(of)));
 }
 
 Connectivity CrispUnion::connectivity(const std::vector<Component>& of) {
@@ -70,9 +70,9 @@ Features CrispUnion::features(const std::vector<Component>& of) {
 
 VectorXd CrispUnion::energy_density(const std::vector<Component>& of) {
   const VectorXd& all = fractions(of);
-  const CellFactors sharp = ersatz_.sharp(all);
+  const CellScaleFactors crisp = ersatz_.crisp(all);
   ComplianceEvaluator::Value value;
-  loads_.evaluate(sharp.stiffness, sharp.mass, value);
+  loads_.evaluate(crisp.stiffness, crisp.mass, value);
   const VectorXd energy = value.d_stiffness.cwiseAbs();
   return energy * (all.sum() / all.dot(energy));
 }

@@ -12,7 +12,7 @@ namespace flexmorph::mmc {
 namespace {
 
 /// Ratio of a width to the required width from which on a narrow place gives no constraint.
-constexpr double kLook = 1.5;
+constexpr double kSearchWidth = 1.5;
 /// Fraction of the required width below which a narrow place has no gradient.
 constexpr double kNoWidth = 1e-3;
 /// kScale is the factor of the relative width error in g. kAim is the ratio of the width in the
@@ -48,7 +48,7 @@ class Contacts {
   }
 
   /// Adds s e · (correction and velocity of the contact at p) to a width and its gradient.
-  void add(const Vec2& p, const Vec2& e, double s, WidthSlope& out) const {
+  void add(const Vec2& p, const Vec2& e, double s, WidthGradient& out) const {
     for (const Share& share : shares_at(p, e)) {
       const Through& t = share.of;
       if (t.component < 0) continue;
@@ -152,22 +152,24 @@ class Contacts {
 /// @param regions  union of the components
 /// @param part     union with its fillets; gaps that the fillets fill do not count
 /// @param most     largest number of places
-std::vector<NarrowPlace> narrowest(const BodyProblem& problem, std::span<const Region> regions,
-                                   std::span<const Region> part, const Widths& wanted,
-                                   size_t most) {
-  std::vector<NarrowPlace> all = narrow_places_of(problem, regions, kLook * wanted.largest());
-  const auto share = [&](const NarrowPlace& p) { return p.width / wanted.of(p); };
-  std::erase_if(all, [&](const NarrowPlace& p) { return !(share(p) < kLook); });
+std::vector<LengthScaleViolation> narrowest(const BodyProblem& problem,
+                                            std::span<const Region> regions,
+                                            std::span<const Region> part,
+                                            const MinimumWidths& wanted, size_t most) {
+  std::vector<LengthScaleViolation> all =
+      length_scale_violations_of(problem, regions, kSearchWidth * wanted.largest());
+  const auto share = [&](const LengthScaleViolation& p) { return p.width / wanted.of(p); };
+  std::erase_if(all, [&](const LengthScaleViolation& p) { return !(share(p) < kSearchWidth); });
   std::stable_sort(all.begin(), all.end(),
                    [&](const auto& p, const auto& q) { return share(p) < share(q); });
-  const auto is_filled = [&](const NarrowPlace& p) {
+  const auto is_filled = [&](const LengthScaleViolation& p) {
     return !p.solid && std::any_of(part.begin(), part.end(),
                                    [&](const Region& piece) { return contains(piece, p.center); });
   };
-  std::vector<NarrowPlace> out;
-  for (const NarrowPlace& p : all) {
+  std::vector<LengthScaleViolation> out;
+  for (const LengthScaleViolation& p : all) {
     if (is_filled(p)) continue;
-    const bool known = std::any_of(out.begin(), out.end(), [&](const NarrowPlace& q) {
+    const bool known = std::any_of(out.begin(), out.end(), [&](const LengthScaleViolation& q) {
       return q.solid == p.solid && (q.center - p.center).norm() < wanted.of(p);
     });
     if (!known) out.push_back(p);
@@ -199,31 +201,32 @@ double half_thickness_for(double min_feature) { return 0.5 * kAllowance * min_fe
 
 namespace {
 
-WidthSlope width_slope_at(const Contacts& contacts, size_t n, const NarrowPlace& place) {
-  WidthSlope out;
+WidthGradient width_gradient_at(const Contacts& contacts, size_t n,
+                                const LengthScaleViolation& location) {
+  WidthGradient out;
   out.slope.setZero(Component::kParameters * static_cast<Eigen::Index>(n));
-  out.width = place.width;
-  const Vec2 e = (place.a - place.b).normalized();
-  contacts.add(place.a, e, 1, out);
-  contacts.add(place.b, e, -1, out);
-  if (place.kind != NarrowPlace::Kind::bar) return out;
+  out.width = location.width;
+  const Vec2 e = (location.a - location.b).normalized();
+  contacts.add(location.a, e, 1, out);
+  contacts.add(location.b, e, -1, out);
+  if (location.kind != LengthScaleViolation::Kind::bar) return out;
   const Vec2 along(-e.y(), e.x());
   double rate = 0;
   VectorXd slide = VectorXd::Zero(out.slope.size());
-  contacts.add_slide(place.a, e, 1, along, rate, slide);
-  contacts.add_slide(place.b, e, -1, along, rate, slide);
+  contacts.add_slide(location.a, e, 1, along, rate, slide);
+  contacts.add_slide(location.b, e, -1, along, rate, slide);
   out.slope -= rate * slide;
   return out;
 }
 
 }  // namespace
 
-WidthSlope width_slope(const BodyProblem& problem, std::span<const Component> components,
-                       const NarrowPlace& place) {
-  return width_slope_at(Contacts(problem, components), components.size(), place);
+WidthGradient width_gradient(const BodyProblem& problem, std::span<const Component> components,
+                             const LengthScaleViolation& location) {
+  return width_gradient_at(Contacts(problem, components), components.size(), location);
 }
 
-OutlineLimits::OutlineLimits(const BodyProblem& problem, const Widths& wanted)
+OutlineLimits::OutlineLimits(const BodyProblem& problem, const MinimumWidths& wanted)
     : problem_(with_fewer_sides(problem)),
       wanted_(wanted),
       domain_area_(area(domain_of(problem_))) {}
@@ -237,15 +240,16 @@ void OutlineLimits::evaluate(std::span<const Component> components, Values& out)
   if (problem_.fillets.radius > 0)
     part = smoothed(part, fixed_rings(problem_), {}, {}, problem_.widths.solid, tolerance, false);
   out.volume = area(part) / domain_area_;
-  out.g.setConstant(count(), kScale * (1 - kLook));
+  out.g.setConstant(count(), kScale * (1 - kSearchWidth));
   out.dg.setZero(count(), Component::kParameters * static_cast<Eigen::Index>(components.size()));
   if (!wanted_.any()) return;
   const Contacts contacts(problem_, components);
   Eigen::Index k = 0;
-  for (const NarrowPlace& place : narrowest(problem_, regions, part, wanted_, kPlaces)) {
-    WidthSlope w = width_slope_at(contacts, components.size(), place);
-    if (place.width < kNoWidth * wanted_.of(place)) w.slope.setZero();
-    const double wanted = kAim * wanted_.of(place);
+  for (const LengthScaleViolation& location :
+       narrowest(problem_, regions, part, wanted_, kLocations)) {
+    WidthGradient w = width_gradient_at(contacts, components.size(), location);
+    if (location.width < kNoWidth * wanted_.of(location)) w.slope.setZero();
+    const double wanted = kAim * wanted_.of(location);
     out.g[k] = kScale * (1 - w.width / wanted);
     out.dg.row(k++) = -kScale / wanted * w.slope.transpose();
   }

@@ -11,20 +11,20 @@ namespace flexmorph::mmc {
 ///
 /// w is 1.002 times the required width.
 ///
-/// w_k is the distance of two contacts of an inscribed disc (narrow_places()). A contact on the
-/// outline of one component moves with this outline along its normal n. A contact at which two
-/// outlines cross moves with both. Fixed outlines (borders, passive regions) do not move:
+/// w_k is the distance of two contacts of an inscribed disc (length_scale_violations()). A contact
+/// on the outline of one component moves with this outline along its normal n. A contact at which
+/// two outlines cross moves with both. Fixed outlines (borders, passive regions) do not move:
 ///
 ///   dw = e · (v_a - v_b),   n_i · v = -dφ_i / |∇φ_i|   for every outline i through the contact,
 ///
 /// where e is the unit vector from b to a. This is exact at necks, where the width is stationary
-/// along the medial axis. The last disc of an end (NarrowPlace::Kind::bar) moves along the end
-/// together with the components: its velocity is the mean of their affine motions at the contacts,
-/// and the change of the width by this displacement is subtracted. w_k includes a Newton step from
-/// the sides of the polygons to the true outlines.
+/// along the medial axis. The last disc of an end (LengthScaleViolation::Kind::bar) moves along the
+/// end together with the components: its velocity is the mean of their affine motions at the
+/// contacts, and the change of the width by this displacement is subtracted. w_k includes a Newton
+/// step from the sides of the polygons to the true outlines.
 ///
 /// The set of narrow places changes from design to design: the rows belong to the narrowest ones,
-/// in no fixed order. A place of width 0 (regions that touch in a point, sharp tips) violates its
+/// in no fixed order. A place of width 0 (regions that touch in a point, crisp tips) violates its
 /// constraint but has no gradient; the places next to it widen it.
 class OutlineLimits final : public ShapeLimits {
  public:
@@ -32,16 +32,16 @@ class OutlineLimits final : public ShapeLimits {
   /// @param problem  only its domain and regions matter, not its design. Their rings are simplified
   ///                 here within kOutlineTolerance, because every side costs time in each iteration
   /// @param wanted   required widths; without any of them there are no constraints
-  OutlineLimits(const BodyProblem& problem, const Widths& wanted);
+  OutlineLimits(const BodyProblem& problem, const MinimumWidths& wanted);
 
-  int count() const override { return wanted_.any() ? kPlaces : 0; }
+  int count() const override { return wanted_.any() ? kLocations : 0; }
   void evaluate(std::span<const Component> components, Values& out) override;
 
  private:
-  static constexpr int kPlaces = 24;
+  static constexpr int kLocations = 24;
 
   BodyProblem problem_;
-  Widths wanted_;
+  MinimumWidths wanted_;
   double domain_area_;
 };
 
@@ -50,12 +50,12 @@ class OutlineLimits final : public ShapeLimits {
 double half_thickness_for(double min_feature);
 
 /// A width and its gradient by the parameters of components.
-struct WidthSlope {
+struct WidthGradient {
   double width = 0;  ///< Width between the true outlines [m].
   VectorXd slope;    ///< Gradient of the width by the parameters of N components (7 N).
 };
 /// Computes the width at a narrow place of the union of these components, and its gradient.
-WidthSlope width_slope(const BodyProblem& problem, std::span<const Component> components,
-                       const NarrowPlace& place);
+WidthGradient width_gradient(const BodyProblem& problem, std::span<const Component> components,
+                             const LengthScaleViolation& location);
 
 }  // namespace flexmorph::mmc

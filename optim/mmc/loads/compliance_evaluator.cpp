@@ -95,7 +95,7 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
     : impl_(std::make_unique<Impl>(
           fem::StaticSolver(plate.grid, plate.section, held, plate.outside), false)) {
   constexpr double kLeftOut = 1e-10;  // fraction of the energy that compression may leave out
-  if (loads.empty()) throw Error::input("static loads: there are none");
+  if (loads.empty()) throw Error::input("static loads: there are no loads");
   Impl& m = *impl_;
   m.at_rest = true;
   if (!gravity.isZero(0)) m.weight.emplace(m.solver, gravity, plate.outside);
@@ -112,7 +112,7 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
       for (int c = 0; c < 2; ++c)
         if (const int row = m.solver.row(f.node, c); row >= 0) m.loads.fixed(l, row) += f.force[c];
     if (m.loads.fixed.row(l).isZero(0) && stretch(l) == 0 && !m.weight)
-      refuse(load, "nothing of it acts on a displacement that is free");
+      refuse(load, "it does not act on any free displacement");
   }
   if (!stretch.isZero(0)) {
     const VectorXd growth = growth_on_supports(m.solver, held);
@@ -121,7 +121,8 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
     for (Eigen::Index l = 0; l < n && !m.restrained; ++l)
       if (m.loads.fixed.row(l).isZero(0))
         refuse(loads[static_cast<std::size_t>(l)],
-               "heat alone, and the supports let the plate grow: nothing is strained");
+               "it consists of heat only, and the supports do not restrain the thermal expansion: "
+               "there is no strain");
   }
   m.solved_weights = m.weights;
   // The weight changes with the design, so that loads with weight cannot be compressed in advance.
@@ -149,7 +150,7 @@ void ComplianceEvaluator::evaluate(const VectorXd& stiffness, const VectorXd& ma
   value.d_held.resize(0);
   if (m.loads.follows_design()) {
     if (m.balance) {
-      m.inertia.products(m.u_link, m.a_link, m.work);
+      m.inertia.products(m.u_element, m.a_link, m.work);
       m.products = m.work.transpose() * m.solved_weights;
     } else {
       m.inertia.products(m.Z, m.solved().acceleration, m.products);
@@ -201,7 +202,7 @@ void ComplianceEvaluator::evaluate_each(const VectorXd& stiffness, const VectorX
   }
   if (m.restrained) m.restrained->add_to(each);
   if (!each.f.allFinite() || !each.d_stiffness.allFinite() || !each.d_mass.allFinite())
-    throw Error::numerical("compliance: a load's objective or its derivative is not finite");
+    throw Error::numerical("compliance: the objective of a load or its derivative is not finite");
   m.seconds = {factored - start, solved - factored, cpu_seconds() - solved};
 }
 
@@ -243,8 +244,8 @@ VectorXd ComplianceEvaluator::displacement(const VectorXd& stiffness, const Vect
                                            int load) {
   Impl& m = *impl_;
   if (load < 0 || load >= n_loads())
-    throw Error::input("compliance: load " + std::to_string(load) + " is not one of " +
-                       std::to_string(n_loads()));
+    throw Error::input("compliance: load " + std::to_string(load) + " does not exist; there are " +
+                       std::to_string(n_loads()) + " loads");
   m.factorize(stiffness);
   const MatrixXd selection = MatrixXd::Identity(n_loads(), n_loads()).row(load);
   const StaticLoads one = combine(selection, m.loads);

@@ -34,7 +34,7 @@ LinkBalance::LinkBalance(const Grid& grid, const fem::PlaneSection& section,
       support_(support),
       rigid_(rigid_motions(grid)) {
   if (pins[0] == pins[1])
-    throw Error::input("equivalent static loads: both pins of a link are at one place");
+    throw Error::input("equivalent static loads: both pins of a link are at the same location");
   if (support_ == Support::floating) return;
   const Vec2 along = (position_of(grid, pins[1]) - position_of(grid, pins[0])).normalized();
   held_ = MatrixXd::Zero(rigid_.rows(), 3);

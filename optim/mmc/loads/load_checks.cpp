@@ -24,26 +24,31 @@ void check_set(const fem::EslSet& set, const Grid& g, bool needs_deformation, in
   const VectorXd& field = needs_deformation ? set.deformation : set.acceleration;
   if (field.size() != 2 * g.n_nodes() || !field.allFinite()) {
     refuse(where + (needs_deformation ? "the deformation" : "the acceleration") +
-           " is not a finite vector for each of " + std::to_string(g.n_nodes()) + " nodes");
+           " is not a finite vector at each of " + std::to_string(g.n_nodes()) + " nodes");
   }
   for (const fem::NodalForce& f : set.forces) {
     if (f.node < 0 || f.node >= g.n_nodes() || !f.force.allFinite()) {
-      refuse(where + "a force at node " + std::to_string(f.node) + " is not finite or has no node");
+      refuse(where + "a force at node " + std::to_string(f.node) +
+             " is not finite, or its node does not exist");
     }
   }
 }
 
 void check_link(const fem::EslSets& loads, const ComplianceSettings& settings) {
-  if (!loads.pins) refuse("a link has two pins, and these loads have none");
+  if (!loads.pins) refuse("a link has two pins, but these loads have no pins");
   if (!is_of_link(settings.support))
-    refuse("a link has no root that 'moving_root' or 'far_end' could hold: 'pins' or 'floating'");
+    refuse(
+        "a link has no root, which 'moving_root' and 'far_end' need; the support of a link is "
+        "'pins' or 'floating'");
   if (settings.loads == LoadDefinition::stiffness)
-    refuse("definition 'stiffness' is for plates with a root, a link has 'inertia' or 'frozen'");
+    refuse(
+        "definition 'stiffness' is only available for plates with a root; the definition of a link "
+        "is 'inertia' or 'frozen'");
   for (const fem::EslSet& set : loads.sets)
     if (set.root_column != 0 || set.thermal_stretch != 0)
-      refuse("a root column or heat, which links do not have");
+      refuse("a load has a root column or heat, which links do not have");
   for (const int pin : *loads.pins)
-    if (pin < 0 || pin >= loads.grid.n_nodes()) refuse("a pin is at no node of the grid");
+    if (pin < 0 || pin >= loads.grid.n_nodes()) refuse("a pin is not at a node of the grid");
 }
 
 }  // namespace
@@ -56,26 +61,27 @@ void check_load(const LoadCase& load, const Grid& grid) {
   if (!(load.weight > 0) || !std::isfinite(load.weight)) refuse(load, "a weight is positive");
   for (const fem::NodalForce& f : load.forces)
     if (f.node < 0 || f.node >= grid.n_nodes() || !f.force.allFinite())
-      refuse(load, "a force is not finite or has no node");
+      refuse(load, "a force is not finite, or its node does not exist");
   if (!(load.thermal_stretch > -1) || !std::isfinite(load.thermal_stretch))
     refuse(load, "a thermal stretch is a number above -1");
 }
 
 void check_loads(const fem::EslSets& loads, const ComplianceSettings& settings,
                  const VectorXd& stiffness0, const VectorXd& mass0) {
-  if (loads.sets.empty()) refuse("there are none");
+  if (loads.sets.empty()) refuse("there are no loads");
   if (settings.loads == LoadDefinition::inertia && settings.support == Support::far_end) {
     refuse(
-        "'inertia' with support 'far_end': loads that follow the design need a reaction on the "
-        "root line that follows it too, which is what support 'moving_root' is; use that, or "
-        "'frozen' or 'stiffness' loads");
+        "definition 'inertia' is not available with support 'far_end': loads that follow the "
+        "design need a reaction on the root line that also follows it. Use support 'moving_root', "
+        "or definition 'frozen' or 'stiffness'");
   }
   if (settings.support == Support::far_end &&
       std::any_of(loads.sets.begin(), loads.sets.end(),
                   [](const fem::EslSet& s) { return s.held_end_stretch != 0; })) {
     refuse(
-        "a hot plate whose far edge a joint holds across, with support 'far_end': that one clamps "
-        "an edge of the grid which is not held in the motion; use 'moving_root'");
+        "support 'far_end' is not available for a hot plate whose far edge is fixed across by a "
+        "joint: it clamps an edge of the grid that is not fixed in the motion. Use support "
+        "'moving_root'");
   }
   double sum = 0;
   for (std::size_t l = 0; l < loads.sets.size(); ++l) {
@@ -84,12 +90,13 @@ void check_loads(const fem::EslSets& loads, const ComplianceSettings& settings,
     sum += loads.sets[l].weight;
   }
   if (!(sum > 0)) refuse("all weights are 0");
-  if (!(settings.compression_tolerance >= 0)) refuse("the compression tolerance is at least 0");
+  if (!(settings.compression_tolerance >= 0))
+    refuse("the compression tolerance must not be negative");
   if (loads.pins || is_of_link(settings.support)) check_link(loads, settings);
   if (settings.loads == LoadDefinition::inertia) return;
   for (const VectorXd* factor : {&stiffness0, &mass0}) {
     if (factor->size() != loads.grid.n_cells() || !factor->allFinite()) {
-      refuse("the design the motion was computed with has no finite factors for " +
+      refuse("the design of the motion does not have finite scale factors for " +
              std::to_string(loads.grid.n_cells()) + " cells");
     }
   }

@@ -73,9 +73,9 @@ const MatrixXd& LoadSolver::solve(const MatrixXd& of, std::span<const int> root_
     U = of;
   solver.solve(U, root_columns);
   if (!balance) return U;
-  to_nodes(U, u_link);
-  balance->choose(u_link);
-  return u_link;
+  to_nodes(U, u_element);
+  balance->choose(u_element);
+  return u_element;
 }
 
 double LoadSolver::solve_sum(const MatrixXd& of) {

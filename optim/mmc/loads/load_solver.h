@@ -43,7 +43,7 @@ struct LoadSolver {
   /// Forces, displacements, weighted displacements and work space that all evaluations use again.
   MatrixXd F = {}, U = {}, Z = {}, work = {};
   /// Displacements u [m] and accelerations a + R c [m/s^2] of a link at all nodes (n x 2 n_nodes).
-  MatrixXd u_link = {}, a_link = {};
+  MatrixXd u_element = {}, a_link = {};
 
   /// Creates a solver without loads.
   LoadSolver(fem::StaticSolver of, bool is_link);
@@ -74,7 +74,7 @@ struct LoadSolver {
   /// nodes (n x 2 n_nodes) [N].
   const MatrixXd& forces(const StaticLoads& of, const VectorXd& mass);
   /// Solves for U and returns the displacements on which the result of forces() does work: U, for a
-  /// link u_link [m].
+  /// link u_element [m].
   const MatrixXd& solve(const MatrixXd& of, std::span<const int> root_columns);
   /// Solves for U of all right-hand sides, with a clamp also for Z with Σ w F . u = Σ F . Z, and
   /// returns Σ w F . u [J].

@@ -120,7 +120,8 @@ void RestrainedExpansion::update(const VectorXd& stiffness) {
   compliances_ = energies_ * stiffness;
   if (holds_end()) add_edge_energies();
   if (!compliances_.allFinite())
-    throw Error::numerical("compliance: the energy of the held thermal growth is not finite");
+    throw Error::numerical(
+        "compliance: the energy of the restrained thermal expansion is not finite");
   stiffness_ = stiffness;
 }
 
@@ -231,7 +232,8 @@ bool exists(const fem::StaticSolver& solver, int node) {
 
 VectorXd growth_on_supports(const fem::StaticSolver& solver,
                             std::span<const fem::HeldUnknown> held) {
-  constexpr double kSmall = 1e-12;  // round-off of the rigid motion, relative to the plate's size
+  constexpr double kRoundOff =
+      1e-12;  // round-off of the rigid motion, relative to the plate's size
   const Grid& g = solver.grid();
   MatrixXd rigid = MatrixXd::Zero(2 * static_cast<Eigen::Index>(g.n_nodes()), 3);
   VectorXd growth(rigid.rows());
@@ -248,7 +250,7 @@ VectorXd growth_on_supports(const fem::StaticSolver& solver,
                         .completeOrthogonalDecomposition()
                         .solve(VectorXd(growth(there)));
   for (int k = 0; k < growth.size(); ++k) {
-    const bool negligible = std::abs(growth(k)) <= kSmall * (g.width + g.height);
+    const bool negligible = std::abs(growth(k)) <= kRoundOff * (g.width + g.height);
     if (solver.row(k / 2, k % 2) < 0 && (negligible || !exists(solver, k / 2))) growth(k) = 0;
   }
   return growth;

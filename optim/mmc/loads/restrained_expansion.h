@@ -125,7 +125,7 @@ VectorXd growth_on_supports(const fem::StaticSolver& solver,
 /// Returns the expansion of a heated plate that is restrained by its supports, which prescribe
 /// -growth_on_supports() at held displacements times the thermal stretch of each load. The result
 /// is empty where the supports permit the free expansion.
-/// @param growth   growth_on_supports() (2 n_nodes) [m]
+/// @param moving_root   growth_on_supports() (2 n_nodes) [m]
 /// @param stretch  thermal stretch of each load (n_loads) [-]
 /// @param weights  weights of the loads (n_loads)
 std::optional<RestrainedExpansion> restrained_supports(const fem::StaticSolver& solver,

@@ -11,14 +11,14 @@
 
 namespace flexmorph::mmc {
 double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
-                         const CellFactors& factors) {
+                         const CellScaleFactors& factors) {
   if (compliance_row(problem.goal).per_load)
     return loads.individual(factors.stiffness, factors.mass).maxCoeff();
   return loads.sum(factors.stiffness, factors.mass);
 }
 
 Figures further_values(const BodyProblem& problem, std::span<const Component> components,
-                       ComplianceEvaluator& loads, const CellFactors& factors) {
+                       ComplianceEvaluator& loads, const CellScaleFactors& factors) {
   DesignState state(loads);
   Figures out;
   for (const ResponseRow* row : further_rows(problem.goal)) {
@@ -37,7 +37,7 @@ Figures full_values(const BodyProblem& problem, ComplianceEvaluator& loads) {
   const double size = grid.width + grid.height;
   const Component all{
       {grid.x0 + grid.width / 2, grid.y0 + grid.height / 2}, size, 0, size, size, size};
-  const CellFactors full = ersatz_of(problem).sharp(fractions_of(problem, {&all, 1}));
+  const CellScaleFactors full = ersatz_of(problem).crisp(fractions_of(problem, {&all, 1}));
   Figures values = further_values(problem, {&all, 1}, loads, full), out;
   values[key_of(compliance_row(problem.goal))] = design_compliance(problem, loads, full);
   for (const Limit& limit : limits)
@@ -111,8 +111,8 @@ bool bounds(std::span<const Vec2> polygon, const Vec2& p, double small) {
 }
 
 /// Returns the supported and loaded cells of the body.
-std::vector<HeldOrLoaded> places_of(const BodyProblem& problem) {
-  return problem.places.empty() ? ends_of(problem.grid) : problem.places;
+std::vector<HeldOrLoaded> locations_of(const BodyProblem& problem) {
+  return problem.locations.empty() ? ends_of(problem.grid) : problem.locations;
 }
 
 /// Returns true if one of 4 x 4 points of the cell, its border included, lies in the region.
@@ -134,26 +134,28 @@ namespace {
 /// Returns true if a narrow location results from passive regions alone: both of its contacts lie
 /// on the outline of one passive region, or on two different borders of the domain or of void
 /// regions.
-bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
+bool is_given(const BodyProblem& problem, const LengthScaleViolation& location) {
   const double small = 1e-6 * problem.grid.dx();
   const auto touches = [&](const std::vector<Vec2>& ring, const Vec2& p) {
     return bounds(ring, p, small);
   };
   const auto within = [&](const std::vector<Vec2>& region) {
-    return touches(region, place.a) && touches(region, place.b);
+    return touches(region, location.a) && touches(region, location.b);
   };
-  const auto& regions = place.solid ? problem.solid : problem.empty;
+  const auto& regions = location.solid ? problem.solid : problem.empty;
   if (std::any_of(regions.begin(), regions.end(), within)) return true;
-  if (!place.solid) return false;
+  if (!location.solid) return false;
   // A fillet at the end of a narrow solid region: one contact lies on the region, which determines
   // the width there.
-  constexpr double kOwn = 0.5;
+  constexpr double kOwnFraction = 0.5;
   const auto own = [&](const std::vector<Vec2>& region) {
-    if (!contains({region, {}}, place.center)) return false;
+    if (!contains({region, {}}, location.center)) return false;
     double near = std::numeric_limits<double>::infinity();
     for (size_t k = 0; k < region.size(); ++k)
-      near = std::min(near, distance({region[k], region[(k + 1) % region.size()]}, place.center));
-    return 2 * near >= kOwn * place.width && (touches(region, place.a) || touches(region, place.b));
+      near =
+          std::min(near, distance({region[k], region[(k + 1) % region.size()]}, location.center));
+    return 2 * near >= kOwnFraction * location.width &&
+           (touches(region, location.a) || touches(region, location.b));
   };
   if (std::any_of(problem.solid.begin(), problem.solid.end(), own)) return true;
   std::vector<std::vector<Vec2>> rings = rings_of(domain_of(problem));
@@ -162,20 +164,20 @@ bool is_given(const BodyProblem& problem, const NarrowPlace& place) {
     return std::find_if(rings.begin(), rings.end(),
                         [&](const std::vector<Vec2>& ring) { return touches(ring, p); });
   };
-  const auto a = ring_at(place.a), b = ring_at(place.b);
+  const auto a = ring_at(location.a), b = ring_at(location.b);
   return a != rings.end() && b != rings.end() && a != b;
 }
 
 /// Returns the gaps between material and the lines that support it, without gaps that end at a
 /// passive region.
-std::vector<NarrowPlace> held_gaps(const BodyProblem& problem, std::span<const Region> regions,
-                                   double limit) {
-  std::vector<NarrowPlace> out = line_gaps(regions, problem.held, limit);
+std::vector<LengthScaleViolation> held_gaps(const BodyProblem& problem,
+                                            std::span<const Region> regions, double limit) {
+  std::vector<LengthScaleViolation> out = line_gaps(regions, problem.held, limit);
   const double small = 1e-6 * problem.grid.dx();
   const auto ends = [&](const std::vector<Vec2>& region, const Vec2& p) {
     return bounds(region, p, small);
   };
-  std::erase_if(out, [&](const NarrowPlace& gap) {
+  std::erase_if(out, [&](const LengthScaleViolation& gap) {
     const auto any = [&](const std::vector<std::vector<Vec2>>& of) {
       return std::any_of(of.begin(), of.end(), [&](const auto& r) { return ends(r, gap.b); });
     };
@@ -186,43 +188,48 @@ std::vector<NarrowPlace> held_gaps(const BodyProblem& problem, std::span<const R
 
 }  // namespace
 
-std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
-                                          std::span<const Region> regions, double limit) {
-  std::vector<NarrowPlace> out = narrow_places(regions, domain_of(problem), limit);
-  std::erase_if(out, [&](const NarrowPlace& place) { return is_given(problem, place); });
-  const std::vector<NarrowPlace> to_held = held_gaps(problem, regions, limit);
+std::vector<LengthScaleViolation> length_scale_violations_of(const BodyProblem& problem,
+                                                             std::span<const Region> regions,
+                                                             double limit) {
+  std::vector<LengthScaleViolation> out =
+      length_scale_violations(regions, domain_of(problem), limit);
+  std::erase_if(out,
+                [&](const LengthScaleViolation& location) { return is_given(problem, location); });
+  const std::vector<LengthScaleViolation> to_held = held_gaps(problem, regions, limit);
   out.insert(out.end(), to_held.begin(), to_held.end());
   std::stable_sort(out.begin(), out.end(),
-                   [](const NarrowPlace& x, const NarrowPlace& y) { return x.width < y.width; });
+                   [](const LengthScaleViolation& x, const LengthScaleViolation& y) {
+                     return x.width < y.width;
+                   });
   return out;
 }
 
 Features features_of(const BodyProblem& problem, std::span<const Region> regions) {
-  Features out = smallest_features(regions, domain_of(problem), [&](const NarrowPlace& place) {
-    return !is_given(problem, place);
-  });
-  for (const NarrowPlace& gap : held_gaps(problem, regions, out.gap))
+  Features out = smallest_features(
+      regions, domain_of(problem),
+      [&](const LengthScaleViolation& location) { return !is_given(problem, location); });
+  for (const LengthScaleViolation& gap : held_gaps(problem, regions, out.gap))
     out.gap = std::min(out.gap, gap.width);
   return out;
 }
 
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {
-  const std::vector<HeldOrLoaded> places = places_of(problem);
+  const std::vector<HeldOrLoaded> locations = locations_of(problem);
   std::vector<std::vector<bool>> touched;
   for (const Region& region : regions) {
     std::vector<bool>& piece = touched.emplace_back();
-    for (const HeldOrLoaded& place : places)
-      piece.push_back(std::any_of(place.cells.begin(), place.cells.end(),
+    for (const HeldOrLoaded& location : locations)
+      piece.push_back(std::any_of(location.cells.begin(), location.cells.end(),
                                   [&](int cell) { return touches(problem.grid, region, cell); }));
   }
-  return flexmorph::connectivity_of(touched, places);
+  return flexmorph::connectivity_of(touched, locations);
 }
 
 namespace {
 
 /// Adds the results that follow from the outline of a part. Returns false where its widths cannot
 /// be computed.
-bool add_outline(const BodyProblem& problem, const FinishedPart& part, SharpDesign& out) {
+bool add_outline(const BodyProblem& problem, const FinishedPart& part, CrispDesign& out) {
   try {
     out.widened = part.widened;
     out.volume = area(part.regions) / area(domain_of(problem));
@@ -239,9 +246,9 @@ bool add_outline(const BodyProblem& problem, const FinishedPart& part, SharpDesi
 
 }  // namespace
 
-SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
+CrispDesign crisp_design(const BodyProblem& problem, std::span<const Component> components,
                          ComplianceEvaluator& loads) {
-  SharpDesign out;
+  CrispDesign out;
   double clock = thread_seconds();
   const std::optional<FinishedPart> part = part_where_united(problem, components);
   out.seconds_outlines = thread_seconds() - clock;
@@ -249,19 +256,20 @@ SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> 
       part ? part_fractions(problem, components, *part) : fractions_of(problem, components);
   const Ersatz ersatz = ersatz_of(problem);
   out.volume = out.fractions.sum() / ersatz.n_domain_cells();
-  const CellFactors sharp = ersatz.sharp(out.fractions);
-  out.compliance = design_compliance(problem, loads, sharp);
-  out.further = further_values(problem, components, loads, sharp);
+  const CellScaleFactors crisp = ersatz.crisp(out.fractions);
+  out.compliance = design_compliance(problem, loads, crisp);
+  out.further = further_values(problem, components, loads, crisp);
   clock = thread_seconds();
   if (!part || !add_outline(problem, *part, out))
-    out.connectivity = connectivity(problem.grid, out.fractions, problem.places);
+    out.connectivity = connectivity(problem.grid, out.fractions, problem.locations);
   out.seconds_outlines += thread_seconds() - clock;
   return out;
 }
 
-fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Component> components) {
-  CellFactors f = Ersatz::dynamic(part_fractions(problem, components), problem.stiffness_void,
-                                  problem.mass_void);
+fem::ScaleFactors dynamic_factors(const BodyProblem& problem,
+                                  std::span<const Component> components) {
+  CellScaleFactors f = Ersatz::dynamic(part_fractions(problem, components), problem.stiffness_void,
+                                       problem.mass_void);
   return {problem.grid, std::move(f.stiffness), std::move(f.mass)};
 }
 

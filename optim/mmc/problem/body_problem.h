@@ -43,9 +43,9 @@ struct BodyProblem {
   std::vector<signed char> outside = {};
 
   /// Supported and loaded cells; empty for ends_of() the grid.
-  std::vector<HeldOrLoaded> places = {};
+  std::vector<HeldOrLoaded> locations = {};
   std::vector<Segment> held = {};  ///< Lines of the border that support adjacent material.
-  Widths widths = {};              ///< Minimum widths of the result [m]; 0: no limit.
+  MinimumWidths widths = {};       ///< Minimum widths of the result [m]; 0: no limit.
   Fillets fillets = {};            ///< Fillets at the inner corners of the finished part.
 
   /// Holes of the domain that are filled by pins in motions and loads [m].
@@ -102,10 +102,11 @@ std::vector<Region> regions_of(const BodyProblem& problem, std::span<const Compo
 /// included. Locations that result from passive regions and holes of the domain alone are left out,
 /// because no design can change them.
 /// @param limit  upper bound of the widths that are returned [m]
-std::vector<NarrowPlace> narrow_places_of(const BodyProblem& problem,
-                                          std::span<const Region> regions, double limit);
+std::vector<LengthScaleViolation> length_scale_violations_of(const BodyProblem& problem,
+                                                             std::span<const Region> regions,
+                                                             double limit);
 /// Returns the smallest widths of material and void of a union of regions, with the exceptions of
-/// narrow_places_of().
+/// length_scale_violations_of().
 Features features_of(const BodyProblem& problem, std::span<const Region> regions);
 
 /// Returns how regions connect supports and loads. The result is exact: a slit far narrower than a
@@ -114,13 +115,13 @@ Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region>
 
 /// Returns the compliance by which designs are compared, which is that of compliance_row() [J].
 double design_compliance(const BodyProblem& problem, ComplianceEvaluator& loads,
-                         const CellFactors& factors);
+                         const CellScaleFactors& factors);
 
 /// Largest values of responses by their key_of().
 using Figures = std::map<std::string, double>;
 /// Returns the largest values of the responses further_rows() of the goal.
 Figures further_values(const BodyProblem& problem, std::span<const Component> components,
-                       ComplianceEvaluator& loads, const CellFactors& factors);
+                       ComplianceEvaluator& loads, const CellScaleFactors& factors);
 
 /// Returns the values of limited responses with Limit::wants_material() for the full design, in
 /// which all cells that can be material are material. Under loads that do not depend on the design
@@ -128,7 +129,7 @@ Figures further_values(const BodyProblem& problem, std::span<const Component> co
 Figures full_values(const BodyProblem& problem, ComplianceEvaluator& loads);
 
 /// The crisp (0-1) design that the outlines enclose, with its responses and widths.
-struct SharpDesign {
+struct CrispDesign {
   VectorXd fractions;         ///< Area fractions of the finished part (n_cells) [-].
   double compliance = 0;      ///< Compliance design_compliance() under the loads [J].
   double volume = 0;          ///< Volume fraction in the domain [-].
@@ -141,11 +142,12 @@ struct SharpDesign {
   double seconds_outlines = 0;  ///< CPU seconds of the union, its connectivity and its widths.
 };
 /// Returns the crisp design of components with its responses under the loads.
-SharpDesign sharp_design(const BodyProblem& problem, std::span<const Component> components,
+CrispDesign crisp_design(const BodyProblem& problem, std::span<const Component> components,
                          ComplianceEvaluator& loads);
 
 /// Returns the scale factors of the body for dynamics: those of the finished part, with the scale
 /// factors of void in dynamics.
-fem::Factors dynamic_factors(const BodyProblem& problem, std::span<const Component> components);
+fem::ScaleFactors dynamic_factors(const BodyProblem& problem,
+                                  std::span<const Component> components);
 
 }  // namespace flexmorph::mmc

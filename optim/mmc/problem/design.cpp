@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kN = Component::kParameters;
 /// Relative tolerance for the comparison of components with mirror images, in half-lengths [-].
-constexpr double kSame = 1e-9;
+constexpr double kSamePosition = 1e-9;
 
 /// The map of component parameters to those of a mirror image: parameter' = sign * parameter +
 /// shift.
@@ -53,10 +53,10 @@ std::vector<Image> images_of(const Symmetry& s) {
 
 /// Returns true if two components cover equal areas, also when their ends are exchanged.
 bool same(const Component& a, const Component& b) {
-  const double small = kSame * a.half_length;
+  const double small = kSamePosition * a.half_length;
   if ((a.center - b.center).norm() > small || std::abs(a.half_length - b.half_length) > small)
     return false;
-  const bool along = std::abs(std::sin(a.angle - b.angle)) < kSame;
+  const bool along = std::abs(std::sin(a.angle - b.angle)) < kSamePosition;
   const bool turned = std::cos(a.angle - b.angle) < 0;
   return along && std::abs(a.c1 - (turned ? b.c2 : b.c1)) < small &&
          std::abs(a.c2 - (turned ? b.c1 : b.c2)) < small && std::abs(a.c3 - b.c3) < small;
@@ -64,17 +64,17 @@ bool same(const Component& a, const Component& b) {
 
 /// Returns true if a component lies on the lower (left) side of the symmetry lines or on them.
 bool on_own_side(const Component& c, const Symmetry& symmetry) {
-  const double small = kSame * c.half_length;
+  const double small = kSamePosition * c.half_length;
   return !(symmetry.x && c.center.x() > *symmetry.x + small) &&
          !(symmetry.y && c.center.y() > *symmetry.y + small);
 }
 
 /// A set of components that is sorted by location, so that a search compares only few of them.
-class ByPlace {
+class ByLocation {
  public:
   void add(const Component& c) { all_.emplace(key(c), c); }
   bool has(const Component& wanted) const {
-    const double reach = 2 * kSame * wanted.half_length;
+    const double reach = 2 * kSamePosition * wanted.half_length;
     const auto end = all_.upper_bound(key(wanted) + reach);
     return std::any_of(all_.lower_bound(key(wanted) - reach), end,
                        [&](const auto& known) { return same(wanted, known.second); });
@@ -102,7 +102,7 @@ std::vector<Component> one_side(const std::vector<Component>& all, const Symmetr
   if (!symmetry.any()) return all;
   const std::vector<Image> images = images_of(symmetry);
   std::vector<Component> out;
-  ByPlace known;
+  ByLocation known;
   for (const Component& c : all) {
     const auto image = std::find_if(images.begin(), images.end(),
                                     [&](const Image& i) { return on_own_side(i.of(c), symmetry); });
@@ -116,7 +116,7 @@ std::vector<Component> one_side(const std::vector<Component>& all, const Symmetr
 
 bool is_symmetric(const std::vector<Component>& all, const Symmetry& symmetry) {
   const std::vector<Image> images = images_of(symmetry);
-  ByPlace known;
+  ByLocation known;
   for (const Component& c : all) known.add(c);
   return std::all_of(images.begin() + 1, images.end(), [&](const Image& image) {
     return std::all_of(all.begin(), all.end(),

@@ -12,10 +12,11 @@ void DesignState::finish(ComplianceEvaluator::Value& value) {
   seconds_.sensitivity += last.sensitivity;
   solved_ = true;
   if (!(value.f > 0) || !std::isfinite(value.f))
-    throw Error::numerical("design problem: the compliance is " + std::to_string(value.f));
+    throw Error::numerical("design problem: the compliance is " + std::to_string(value.f) +
+                           " J; it must be positive");
 }
 
-void DesignState::sum(const CellFactors& factors, Values& out) {
+void DesignState::sum(const CellScaleFactors& factors, Values& out) {
   ComplianceEvaluator::Value& value = solved_ ? other_ : value_;
   loads_.evaluate(factors.stiffness, factors.mass, value);
   finish(value);
@@ -24,7 +25,7 @@ void DesignState::sum(const CellFactors& factors, Values& out) {
   out.d_mass = value.d_mass.transpose();
 }
 
-void DesignState::each(const CellFactors& factors, Values& out) {
+void DesignState::each(const CellScaleFactors& factors, Values& out) {
   ComplianceEvaluator::Value& value = solved_ ? other_ : value_;
   loads_.evaluate_each(factors.stiffness, factors.mass, out);
   Eigen::Index worst = 0;
@@ -38,7 +39,7 @@ void DesignState::each(const CellFactors& factors, Values& out) {
   for (Eigen::Index l = 0; l < out.f.size(); ++l)
     if (!(out.f[l] > 0))
       throw Error::numerical("design problem: the compliance of load " + std::to_string(l + 1) +
-                             " is " + std::to_string(out.f[l]));
+                             " is " + std::to_string(out.f[l]) + " J; it must be positive");
 }
 
 }  // namespace flexmorph::mmc

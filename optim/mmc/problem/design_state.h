@@ -27,11 +27,11 @@ class DesignState {
   /// Computes the weighted sum of the compliances and its derivatives.
   /// @param out  receives them; d_parameters stays unchanged
   /// @throws Error (numerical) when the state cannot be solved, or a compliance is not positive.
-  void sum(const CellFactors& factors, Values& out);
+  void sum(const CellScaleFactors& factors, Values& out);
   /// Computes the compliance of every load and its derivatives.
   /// @param out  receives them; d_parameters stays unchanged
   /// @throws Error (numerical) when the state cannot be solved, or a compliance is not positive.
-  void each(const CellFactors& factors, Values& out);
+  void each(const CellScaleFactors& factors, Values& out);
 
   /// Returns the result of the first evaluation after begin(): of each() the largest compliance.
   /// The compliance is NaN until anything has been solved.

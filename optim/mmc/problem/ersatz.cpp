@@ -29,7 +29,7 @@ Ersatz::Ersatz(const Grid& grid, double alpha, std::span<const std::vector<Vec2>
     if (outside[cell]) fixed_[cell] = -1;
 }
 
-void Ersatz::factors(const VectorXd& h, const VectorXd& eroded, CellFactors& out) const {
+void Ersatz::factors(const VectorXd& h, const VectorXd& eroded, CellScaleFactors& out) const {
   out.stiffness.resize(grid_.n_cells());
   out.mass.resize(grid_.n_cells());
   for (int i = 0; i < grid_.nx; ++i)
@@ -89,7 +89,7 @@ VectorXd Ersatz::twice(const VectorXd& d_stiffness) const {
   return out;
 }
 
-Eigen::SparseMatrix<double> Ersatz::stiffness_slopes(const VectorXd& eroded) const {
+Eigen::SparseMatrix<double> Ersatz::stiffness_gradient(const VectorXd& eroded) const {
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < grid_.nx; ++i)
     for (int j = 0; j < grid_.ny; ++j) {
@@ -112,11 +112,12 @@ std::vector<signed char> Ersatz::shaped_nodes() const {
   return out;
 }
 
-CellFactors Ersatz::sharp(const VectorXd& fractions) const {
+CellScaleFactors Ersatz::crisp(const VectorXd& fractions) const {
   return dynamic(fractions, alpha_ * alpha_, 0);
 }
 
-CellFactors Ersatz::dynamic(const VectorXd& fractions, double stiffness_void, double mass_void) {
+CellScaleFactors Ersatz::dynamic(const VectorXd& fractions, double stiffness_void,
+                                 double mass_void) {
   const auto blend = [&](double at_void) {
     return VectorXd(at_void + (1 - at_void) * fractions.array());
   };

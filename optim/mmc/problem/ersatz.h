@@ -9,7 +9,7 @@
 namespace flexmorph::mmc {
 
 /// Scale factors of stiffness and mass of the cells, relative to full material.
-struct CellFactors {
+struct CellScaleFactors {
   VectorXd stiffness, mass;  ///< Scale factors of each cell (n_cells) [-].
 };
 
@@ -39,7 +39,7 @@ class Ersatz {
 
   /// Computes the scale factors of all cells.
   /// @param h, eroded  density() and eroded() of the TDF (n_nodes)
-  void factors(const VectorXd& h, const VectorXd& eroded, CellFactors& out) const;
+  void factors(const VectorXd& h, const VectorXd& eroded, CellScaleFactors& out) const;
 
   /// Applies the chain rule to one function: df/dstiffness and df/dmass (n_cells) -> df/dH and
   /// df/dE (n_nodes).
@@ -57,7 +57,7 @@ class Ersatz {
   /// @param d_stiffness  df/dstiffness (n_cells)
   VectorXd twice(const VectorXd& d_stiffness) const;
   /// Returns the derivatives dstiffness/dE (n_cells x n_nodes).
-  Eigen::SparseMatrix<double> stiffness_slopes(const VectorXd& eroded) const;
+  Eigen::SparseMatrix<double> stiffness_gradient(const VectorXd& eroded) const;
 
   /// Returns 1 for nodes of cells that are not fixed, whose values components can change, and 0 for
   /// all other nodes (n_nodes).
@@ -66,13 +66,14 @@ class Ersatz {
   /// Returns the scale factors of a crisp design: full material where there is material, the void
   /// stiffness of factors() elsewhere.
   /// @param fractions  area fractions of the exact union (n_cells)
-  CellFactors sharp(const VectorXd& fractions) const;
-  /// Returns the derivative of a stiffness factor of sharp() by its area fraction. The derivative
+  CellScaleFactors crisp(const VectorXd& fractions) const;
+  /// Returns the derivative of a stiffness factor of crisp() by its area fraction. The derivative
   /// of a mass factor is 1.
-  double sharp_stiffness_slope() const { return 1 - alpha_ * alpha_; }
+  double crisp_stiffness_derivative() const { return 1 - alpha_ * alpha_; }
   /// Returns the scale factors of a crisp design for dynamics, with separate scale factors of void.
   /// @param fractions  area fractions of the exact union (n_cells)
-  static CellFactors dynamic(const VectorXd& fractions, double stiffness_void, double mass_void);
+  static CellScaleFactors dynamic(const VectorXd& fractions, double stiffness_void,
+                                  double mass_void);
 
  private:
   Grid grid_;

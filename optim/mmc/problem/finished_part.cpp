@@ -81,8 +81,9 @@ std::vector<Region> smoothed_part(const BodyProblem& p, std::span<const Region> 
   const std::vector<std::vector<Vec2>> fixed = fixed_rings(p);
   std::vector<Region> out = smoothed(regions, fixed, mirrors, {}, p.widths.solid, tolerance);
   std::vector<Vec2> kept;
-  for (const NarrowPlace& place : narrow_places_of(p, out, p.widths.largest()))
-    if (place.width < p.widths.of(place)) kept.insert(kept.end(), {place.a, place.b});
+  for (const LengthScaleViolation& location :
+       length_scale_violations_of(p, out, p.widths.largest()))
+    if (location.width < p.widths.of(location)) kept.insert(kept.end(), {location.a, location.b});
   if (kept.empty()) return out;
   return smoothed(regions, fixed, mirrors, kept, p.widths.solid, tolerance);
 }
@@ -115,32 +116,34 @@ std::vector<Region> filled(const BodyProblem& p, std::span<const Component> comp
 
 /// Returns the violations of the minimum width of material, narrowest first: one for each
 /// neighbourhood of the size of that width.
-std::vector<NarrowPlace> too_narrow(const BodyProblem& p, std::span<const Region> regions) {
-  constexpr double kEnough = 0.99;
-  std::vector<NarrowPlace> out;
-  for (const NarrowPlace& place : narrow_places_of(p, regions, kEnough * p.widths.solid)) {
-    const bool known = std::any_of(out.begin(), out.end(), [&](const NarrowPlace& other) {
-      return (other.center - place.center).norm() < p.widths.solid;
+std::vector<LengthScaleViolation> too_narrow(const BodyProblem& p,
+                                             std::span<const Region> regions) {
+  constexpr double kWidthTolerance = 0.99;
+  std::vector<LengthScaleViolation> out;
+  for (const LengthScaleViolation& location :
+       length_scale_violations_of(p, regions, kWidthTolerance * p.widths.solid)) {
+    const bool known = std::any_of(out.begin(), out.end(), [&](const LengthScaleViolation& other) {
+      return (other.center - location.center).norm() < p.widths.solid;
     });
-    if (place.solid && !known) out.push_back(place);
+    if (location.solid && !known) out.push_back(location);
   }
   return out;
 }
 
 /// Returns true if the components satisfy the minimum width except for a few small violations.
 /// Violations in fillings of gaps and corners do not count, because widening corrects them.
-bool has_nearly_widths(std::span<const NarrowPlace> narrow, std::span<const Region> union_of_all,
-                       double wanted) {
+bool has_nearly_widths(std::span<const LengthScaleViolation> narrow,
+                       std::span<const Region> union_of_all, double wanted) {
   constexpr double kNarrowest = 0.5;
-  constexpr int kMost = 6;
-  const auto is_of_components = [&](const NarrowPlace& place) {
+  constexpr int kMaxRounds = 6;
+  const auto is_of_components = [&](const LengthScaleViolation& location) {
     return std::any_of(union_of_all.begin(), union_of_all.end(),
-                       [&](const Region& piece) { return contains(piece, place.center); });
+                       [&](const Region& piece) { return contains(piece, location.center); });
   };
   int few = 0;
-  for (const NarrowPlace& place : narrow) {
-    if (!is_of_components(place)) continue;
-    if (place.width < kNarrowest * wanted || ++few > kMost) return false;
+  for (const LengthScaleViolation& location : narrow) {
+    if (!is_of_components(location)) continue;
+    if (location.width < kNarrowest * wanted || ++few > kMaxRounds) return false;
   }
   return true;
 }
@@ -155,13 +158,13 @@ FinishedPart widened(const BodyProblem& p, std::span<const Component> components
   std::optional<std::vector<Region>> bare;  // the union without fillets
   FinishedPart out{filled(p, components, {}, tolerance), 0};
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<NarrowPlace> narrow = too_narrow(p, out.regions);
+    const std::vector<LengthScaleViolation> narrow = too_narrow(p, out.regions);
     if (narrow.empty()) break;
     if (!bare) bare = regions_of(p, components, tolerance);
     out.has_widths = has_nearly_widths(narrow, *bare, p.widths.solid);
     if (!out.has_widths) break;
-    for (const NarrowPlace& place : narrow)
-      discs.push_back(circle_within(place.center, 0.5 * kDisc * p.widths.solid, tolerance));
+    for (const LengthScaleViolation& location : narrow)
+      discs.push_back(circle_within(location.center, 0.5 * kDisc * p.widths.solid, tolerance));
     out = {filled(p, components, discs, tolerance), static_cast<int>(discs.size())};
   }
   return out;

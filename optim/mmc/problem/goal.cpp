@@ -71,7 +71,7 @@ Goal smooth(Goal goal) {
   return goal;
 }
 
-std::string objective_words(const Goal& goal) {
+std::string objective_text(const Goal& goal) {
   std::string out(goal.addends.empty() ? "" : "weighted sum of ");
   out += goal.objective->words;
   for (const Addend& a : goal.addends) out.append(", ").append(a.row->words);

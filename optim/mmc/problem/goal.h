@@ -78,7 +78,7 @@ Goal goal_of_motion(Goal goal);
 /// replaces the largest compliance.
 Goal smooth(Goal goal);
 /// Returns the text that names the objective: "strain energy in motion", "weighted sum of ...".
-std::string objective_words(const Goal& goal);
+std::string objective_text(const Goal& goal);
 
 /// Returns true if a limit prevents the full plate (or the empty plate, where the objective rises
 /// with the amount of material) from being the optimum.

@@ -18,14 +18,14 @@ namespace {
 constexpr double kWeakestLink = 0.1;
 /// A design without such connections carries its loads nevertheless if its compliance is less than
 /// this multiple of that of uniform material. If it were refused, the optimizer could not proceed.
-constexpr double kMostCompliant = 2;
+constexpr double kMaxCompliance = 2;
 /// The variable that bounds an objective with one value per load: log z per unit of the variable,
 /// and the largest distance of the variable from its start.
 constexpr double kLogPerUnit = 10, kReachOfBound = 3;
 }  // namespace
 
 MmcProblem::MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal goal,
-                       std::vector<HeldOrLoaded> places)
+                       std::vector<HeldOrLoaded> locations)
     : plate_(plate.plate),
       design_(plate.design),
       ersatz_(plate.ersatz),
@@ -36,7 +36,7 @@ MmcProblem::MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal 
       limited_(plate.limited),
       tdf_(plate_.grid, tdf),
       goal_(std::move(goal)),
-      places_(std::move(places)),
+      locations_(std::move(locations)),
       start_(design_.x()),
       zero_(VectorXd::Zero(plate_.grid.n_cells())) {
   for (const ResponseRow* row : rows_of(goal_))
@@ -90,8 +90,8 @@ void MmcProblem::look(const VectorXd& x) {
   x_ = x;
   design_.components(design_part(x), components_);
   if (crisp_) {
-    factors_ = ersatz_.sharp(crisp_->fractions(components_));
-    crisp_slopes_ =
+    factors_ = ersatz_.crisp(crisp_->fractions(components_));
+    crisp_gradient_ =
         std::make_unique<const Eigen::SparseMatrix<double>>(crisp_->slopes(components_));
   } else {
     tdf_.evaluate(components_);
@@ -100,28 +100,28 @@ void MmcProblem::look(const VectorXd& x) {
   volume_ = factors_.mass.sum() / ersatz_.n_domain_cells();
   seconds_tdf_ += cpu_seconds() - clock;
   solved_ = differentiated_ = false;
-  if (motion_) motion_->state->announce(motion_->body, factors_);
+  if (motion_) motion_->state->notify(motion_->body, factors_);
 }
 
 /// Computes the scale factors, the volume and the values of all responses at a design.
 void MmcProblem::solve(const VectorXd& x) {
   look(x);
   state_.begin();
-  const Seen seen{factors_, components_, state_, motion_};
+  const DesignView seen{factors_, components_, state_, motion_};
   for (Entry& e : entries_) e.response->evaluate(seen, e.values);
   solved_ = true;
 }
 
-void MmcProblem::recall(const VectorXd& x) {
+void MmcProblem::restore(const VectorXd& x) {
   x_ = x;
   design_.components(design_part(x), components_);
   solved_ = differentiated_ = false;
 }
 
 MatrixXd MmcProblem::pull_back_crisp(const MatrixXd& d_stiffness, const MatrixXd& d_mass) const {
-  MatrixXd by_fraction = ersatz_.sharp_stiffness_slope() * d_stiffness;
+  MatrixXd by_fraction = ersatz_.crisp_stiffness_derivative() * d_stiffness;
   if (d_mass.size() > 0) by_fraction += d_mass;
-  return by_fraction * *crisp_slopes_;
+  return by_fraction * *crisp_gradient_;
 }
 
 /// Converts the derivatives by scale factors and component parameters: for a response with one
@@ -163,13 +163,12 @@ VectorXd MmcProblem::gradient(const Entry& e, double divisor) const {
   return out;
 }
 
-VectorXd MmcProblem::slope_of(const CellFactors& by_factors) {
+VectorXd MmcProblem::pull_back_scale_factors(const CellScaleFactors& d_factors) {
   VectorXd out;
   if (crisp_) {
-    out =
-        pull_back_crisp(by_factors.stiffness.transpose(), by_factors.mass.transpose()).transpose();
+    out = pull_back_crisp(d_factors.stiffness.transpose(), d_factors.mass.transpose()).transpose();
   } else {
-    ersatz_.pull_back(tdf_.eroded(), by_factors.stiffness, by_factors.mass, d_h_, d_eroded_);
+    ersatz_.pull_back(tdf_.eroded(), d_factors.stiffness, d_factors.mass, d_h_, d_eroded_);
     tdf_.pull_back(d_h_, d_eroded_, out);
   }
   design_.scale_gradient(out);
@@ -177,13 +176,14 @@ VectorXd MmcProblem::slope_of(const CellFactors& by_factors) {
 }
 
 /// Adds the constraints log f_l - bound <= 0 of a response with one value per load.
-void MmcProblem::add_each(const Entry& e, double bound, int first_row, optim::Response& out) const {
+void MmcProblem::add_each(const Entry& e, double bound, int first_row,
+                          optim::ProblemValues& out) const {
   const Eigen::Index n = design_.n_variables(), m = e.values.f.size();
   for (Eigen::Index l = 0; l < m; ++l) out.g[first_row + l] = std::log(e.values.f[l]) - bound;
   out.dg.block(first_row, 0, m, n) = e.values.f.cwiseInverse().asDiagonal() * e.slopes;
 }
 
-void MmcProblem::add_limit(const Limit& limit, int first_row, optim::Response& out) const {
+void MmcProblem::add_limit(const Limit& limit, int first_row, optim::ProblemValues& out) const {
   const Entry& e = entry(*limit.row);
   const Eigen::Index n = design_.n_variables();
   const VectorXd& f = e.values.f;
@@ -205,7 +205,7 @@ void MmcProblem::add_limit(const Limit& limit, int first_row, optim::Response& o
   out.dg.middleRows(first_row, count(*limit.row)) *= -1;
 }
 
-void MmcProblem::add_objective(optim::Response& out) const {
+void MmcProblem::add_objective(optim::ProblemValues& out) const {
   const Entry& e = entries_.front();
   if (bounded()) {
     const Eigen::Index n = design_.n_variables();
@@ -226,24 +226,24 @@ void MmcProblem::add_objective(optim::Response& out) const {
   }
 }
 
-void MmcProblem::add_shape(optim::Response& out) {
+void MmcProblem::add_shape(optim::ProblemValues& out) {
   const Eigen::Index m = outline_.g.size();
   design_.scale_gradients(outline_.dg);
   out.g.tail(m) = outline_.g;
   out.dg.bottomLeftCorner(m, outline_.dg.cols()) = outline_.dg;
 }
 
-optim::Response MmcProblem::evaluate(const VectorXd& x) {
+optim::ProblemValues MmcProblem::evaluate(const VectorXd& x) {
   solve(x);
   const double clock = cpu_seconds();
   for (Entry& e : entries_) pull_back(e);
   differentiated_ = true;
-  optim::Response out;
+  optim::ProblemValues out;
   out.df.setZero(n_variables());
   out.g.setZero(n_constraints());
   out.dg.setZero(n_constraints(), n_variables());
   if (shape_) shape_->evaluate(components_, outline_);
-  if (limited_) look_at_limits();
+  if (limited_) analyse_limits();
   for (size_t k = 0; k < goal_.limits.size(); ++k) add_limit(goal_.limits[k], row_of(k), out);
   add_objective(out);
   if (shape_) add_shape(out);
@@ -252,10 +252,10 @@ optim::Response MmcProblem::evaluate(const VectorXd& x) {
 }
 
 /// Computes the values of limited responses of the loads for the crisp design.
-void MmcProblem::look_at_limits() {
+void MmcProblem::analyse_limits() {
   DesignState state(state_.loads());
-  const CellFactors factors = ersatz_.sharp(limited_->of_part(components_));
-  const Seen seen{factors, components_, state, motion_};
+  const CellScaleFactors factors = ersatz_.crisp(limited_->of_part(components_));
+  const DesignView seen{factors, components_, state, motion_};
   for (const Limit& limit : goal_.limits) {
     if (!limit.row->needs_state() || limit.row->of_motion) continue;
     for (Entry& e : entries_) {
@@ -316,14 +316,14 @@ MatrixXd MmcProblem::curvature(const VectorXd& x, double sigma, const VectorXd& 
     add_row(e, VectorXd::Constant(1, e.row->full ? sigma / e.row->full(plate_) : sigma),
             e.row->full == nullptr, sum);
 
-  UnionTdf::NodeSlopes f;
+  UnionTdf::NodeGradients f;
   ersatz_.pull_back(tdf_.eroded(), sum.d_stiffness, sum.d_mass, f.df_dh, f.df_deroded);
   f.d2f_deroded2 = ersatz_.twice(sum.d_stiffness);
   const Eigen::SparseMatrix<double> slopes = tdf_.slopes();
   MatrixXd own = tdf_.curvature(f, slopes);
   if (sum.of_sum != 0 || sum.of_each.size() > 0) {
     const Eigen::SparseMatrix<double> directions =
-        ersatz_.stiffness_slopes(tdf_.eroded()) * (tdf_.eroded_slopes().asDiagonal() * slopes);
+        ersatz_.stiffness_gradient(tdf_.eroded()) * (tdf_.eroded_gradient().asDiagonal() * slopes);
     ComplianceEvaluator& loads = state_.loads();
     if (sum.of_sum != 0) own += sum.of_sum * loads.curvature(factors_.stiffness, directions, {});
     if (sum.of_each.size() > 0) own += loads.curvature(factors_.stiffness, directions, sum.of_each);
@@ -344,8 +344,8 @@ bool MmcProblem::acceptable([[maybe_unused]] const VectorXd& x) {
   assert(x == x_);
   // connectivity() joins cells of at least half density, but intermediate designs may be connected
   // by cells of lower density: the mass factors are scaled up accordingly.
-  return connectivity(plate_.grid, 0.5 / kWeakestLink * factors_.mass, places_).connected ||
-         (std::isfinite(compliance()) && compliance() < kMostCompliant * uniform_compliance());
+  return connectivity(plate_.grid, 0.5 / kWeakestLink * factors_.mass, locations_).connected ||
+         (std::isfinite(compliance()) && compliance() < kMaxCompliance * uniform_compliance());
 }
 
 /// Returns the compliance of uniform material of the allowed volume, which P compares designs with.

@@ -29,7 +29,7 @@ struct DesignedPlate {
 
   /// Body index in the coupled problem, with the motion of the mechanism; null if no response of
   /// the goal is one of the motion.
-  const MotionSeat* motion = nullptr;
+  const CoupledMotion* motion = nullptr;
   /// Crisp geometry whose area fractions replace the regularized design in all responses; null for
   /// the regularized design.
   const CrispPicture* crisp = nullptr;
@@ -63,9 +63,9 @@ class MmcProblem final : public optim::Problem {
   /// Creates the problem, and solves the state at the start if the objective has one value per
   /// load.
   /// @param tdf     settings of the topology description function
-  /// @param places  supported and loaded locations, see connectivity()
+  /// @param locations  supported and loaded locations, see connectivity()
   MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal goal,
-             std::vector<HeldOrLoaded> places = {});
+             std::vector<HeldOrLoaded> locations = {});
 
   int n_variables() const override { return design_.n_variables() + (bounded() ? 1 : 0); }
   /// Returns the number of constraints. Their order is: the limits of the goal, the bounds of an
@@ -76,7 +76,7 @@ class MmcProblem final : public optim::Problem {
   /// Returns the initial variables. The variable that bounds an objective with one value per load
   /// starts at the largest value.
   VectorXd start() const override { return start_; }
-  optim::Response evaluate(const VectorXd& x) override;
+  optim::ProblemValues evaluate(const VectorXd& x) override;
   /// Returns true if all responses are sums over cells or compliances under loads that have second
   /// derivatives, and the TDF is `distance`; crisp geometry and constraints on the outline have
   /// none.
@@ -88,18 +88,18 @@ class MmcProblem final : public optim::Problem {
   bool acceptable(const VectorXd& x) override;
   /// Sets the components to those of x without an evaluation. Values and scale factors are not
   /// valid until the next evaluate().
-  void recall(const VectorXd& x);
+  void restore(const VectorXd& x);
   /// Computes the scale factors of the design x without a state solve, and passes them to the
   /// motion state of the mechanism.
   void look(const VectorXd& x);
   /// Returns the derivatives of the objective by the parameters of all components, mirror images
   /// included (7 N), after evaluate() of an objective with one value.
-  const VectorXd& objective_slopes() const { return entries_.front().slope; }
+  const VectorXd& objective_gradient() const { return entries_.front().slope; }
   /// Returns the gradient by the design variables of a function, after look().
-  /// @param by_factors  derivatives of the function by the scale factors of the cells
-  VectorXd slope_of(const CellFactors& by_factors);
+  /// @param d_factors  derivatives of the function by the scale factors of the cells
+  VectorXd pull_back_scale_factors(const CellScaleFactors& d_factors);
   /// Returns the body index in the coupled problem with its motion; null if there is no motion.
-  const MotionSeat* motion() const { return motion_; }
+  const CoupledMotion* motion() const { return motion_; }
 
   /// Returns true if the values of the responses belong to x().
   bool is_solved() const { return solved_; }
@@ -126,7 +126,7 @@ class MmcProblem final : public optim::Problem {
   /// Returns the components of the last design, mirror images included.
   const std::vector<Component>& components() const { return components_; }
   /// Returns the scale factors of stiffness and mass of the cells at the last design.
-  const CellFactors& factors() const { return factors_; }
+  const CellScaleFactors& factors() const { return factors_; }
   /// Returns the nodal values φ of the TDF at the last design (n_nodes).
   const VectorXd& phi() const { return tdf_.phi(); }
   /// Returns the half-width ε of the band of the Heaviside function.
@@ -156,7 +156,7 @@ class MmcProblem final : public optim::Problem {
   const Entry& entry(const ResponseRow& row) const;
   void solve(const VectorXd& x);
   double uniform_compliance();
-  void look_at_limits();
+  void analyse_limits();
   void pull_back(Entry& entry);
   /// Converts derivatives by the scale factors of the crisp design (m x n_cells) into derivatives
   /// by the component parameters (m x 7 N). An empty d_mass stands for zeros.
@@ -170,26 +170,26 @@ class MmcProblem final : public optim::Problem {
   };
   void add_row(const Entry& entry, const VectorXd& weights, bool logarithm, Lagrangian& out) const;
   VectorXd gradient(const Entry& entry, double divisor) const;
-  void add_each(const Entry& entry, double bound, int first_row, optim::Response& out) const;
-  void add_limit(const Limit& limit, int first_row, optim::Response& out) const;
-  void add_objective(optim::Response& out) const;
-  void add_shape(optim::Response& out);
+  void add_each(const Entry& entry, double bound, int first_row, optim::ProblemValues& out) const;
+  void add_limit(const Limit& limit, int first_row, optim::ProblemValues& out) const;
+  void add_objective(optim::ProblemValues& out) const;
+  void add_shape(optim::ProblemValues& out);
 
   Plate plate_;
   const Design& design_;
   const Ersatz& ersatz_;
   DesignState state_;
   ShapeLimits* shape_;
-  const MotionSeat* motion_;
+  const CoupledMotion* motion_;
   const CrispPicture *crisp_, *limited_;
-  std::unique_ptr<const Eigen::SparseMatrix<double>> crisp_slopes_;  // at the last design
+  std::unique_ptr<const Eigen::SparseMatrix<double>> crisp_gradient_;  // at the last design
   UnionTdf tdf_;
   Goal goal_;
   std::vector<Entry> entries_;  // the objective is the first entry
-  std::vector<HeldOrLoaded> places_;
+  std::vector<HeldOrLoaded> locations_;
   VectorXd start_;
   std::vector<Component> components_;
-  CellFactors factors_;
+  CellScaleFactors factors_;
   VectorXd x_, d_stiffness_, d_mass_, d_h_, d_eroded_, zero_;
   MatrixXd many_by_h_, many_by_eroded_;
   ShapeLimits::Values outline_;

@@ -29,8 +29,8 @@ MotionState::MotionState(MotionResponse& motion, std::span<const Goal* const> go
   }
 }
 
-void MotionState::announce(size_t body, const CellFactors& factors) {
-  CellFactors& known = factors_[body];
+void MotionState::notify(size_t body, const CellScaleFactors& factors) {
+  CellScaleFactors& known = factors_[body];
   if (known.stiffness.size() == factors.stiffness.size() && known.stiffness == factors.stiffness &&
       known.mass == factors.mass)
     return;
@@ -61,12 +61,13 @@ void MotionState::value(const ResponseRow& row, size_t body, Values& out) {
     out.d_mass.row(0) += rows_[k].weight * values_[k].slopes[body].mass;
   }
   if (!(sum > 0) || !std::isfinite(sum))
-    throw Error::numerical("design problem: the " + std::string(row.words) + " of the motion is " +
-                           std::to_string(sum));
+    throw Error::numerical("design problem: the " + std::string(row.words) + " is " +
+                           std::to_string(sum) + "; it must be positive");
   out.f = VectorXd::Constant(1, sum);
 }
 
-const CellFactors& MotionState::limit_slopes(const ResponseRow& row, size_t body, size_t by) {
+const CellScaleFactors& MotionState::limit_gradient(const ResponseRow& row, size_t body,
+                                                    size_t by) {
   move();
   return values_[rows_behind(row, body).first].slopes[by];
 }

@@ -35,17 +35,17 @@ class MotionResponse {
     double f = 0;  ///< Value, in the unit of the response.
 
     /// Derivatives df/dstiffness and df/dmass for every designed body (n_cells each).
-    std::vector<CellFactors> slopes;
+    std::vector<CellScaleFactors> slopes;
   };
   /// Computes all responses by one motion and one adjoint computation.
   /// @param factors  scale factors of every designed body from its design problem; the scale
   ///                 factors of void in motions are added to them
   /// @throws Error (numerical) when the motion fails.
   virtual std::vector<Value> evaluate(std::span<const MotionRow> rows,
-                                      std::span<const CellFactors> factors) = 0;
+                                      std::span<const CellScaleFactors> factors) = 0;
   /// Computes all responses of a crisp design by one motion, without derivatives.
   /// @param fractions  area fractions of material of every designed body (n_cells each)
-  virtual std::vector<double> sharp(std::span<const MotionRow> rows,
+  virtual std::vector<double> crisp(std::span<const MotionRow> rows,
                                     std::span<const VectorXd> fractions) = 0;
   /// Returns the number of motions computed so far, those with gradients included.
   virtual int motions() const = 0;
@@ -61,14 +61,14 @@ class MotionState {
   MotionState(MotionResponse& motion, std::span<const Goal* const> goals);
 
   /// Sets the scale factors of a body; the motion is invalidated if they have changed.
-  void announce(size_t body, const CellFactors& factors);
+  void notify(size_t body, const CellScaleFactors& factors);
   /// Computes the objective J if `row` is the objective of the body, otherwise a limited response,
   /// with the derivatives by the scale factors of the body.
   /// @param out  receives the result; d_parameters stays unchanged
   /// @throws Error (numerical) as MotionResponse::evaluate(), or where the value is not positive.
   void value(const ResponseRow& row, size_t body, Values& out);
   /// Returns the derivatives of a limited response of `body` by the scale factors of the body `by`.
-  const CellFactors& limit_slopes(const ResponseRow& row, size_t body, size_t by);
+  const CellScaleFactors& limit_gradient(const ResponseRow& row, size_t body, size_t by);
 
  private:
   struct Range {
@@ -81,12 +81,12 @@ class MotionState {
   std::vector<MotionRow> rows_;  // the objectives, each once, then the limited responses
   size_t n_objectives_ = 0;
   std::vector<const ResponseRow*> objective_of_;  // objective of every body
-  std::vector<CellFactors> factors_;
+  std::vector<CellScaleFactors> factors_;
   std::vector<MotionResponse::Value> values_;  // values of rows_; empty: not computed yet
 };
 
 /// The body index in the coupled problem of a mechanism, with the motion of the mechanism.
-struct MotionSeat {
+struct CoupledMotion {
   MotionState* state = nullptr;  ///< Motion of the mechanism, shared by all its designed bodies.
   size_t body = 0;               ///< Index of the designed body.
 };

@@ -13,17 +13,17 @@
 
 namespace flexmorph::mmc {
 
-struct MotionSeat;
+struct CoupledMotion;
 
 /// View of a design state at which responses are evaluated.
-struct Seen {
-  const CellFactors& factors;             ///< Scale factors of stiffness and mass of the cells.
+struct DesignView {
+  const CellScaleFactors& factors;        ///< Scale factors of stiffness and mass of the cells.
   std::span<const Component> components;  ///< Components of the design.
   DesignState& state;                     ///< State under the loads, solved on demand.
 
   /// Body index in the coupled problem, with a motion that is computed on demand; null where there
   /// is no mechanism.
-  const MotionSeat* motion = nullptr;
+  const CoupledMotion* motion = nullptr;
 };
 
 /// A response of a design: its values, and their derivatives by the scale factors of the cells and
@@ -35,7 +35,7 @@ class Response {
   /// Computes the values and their derivatives at a design.
   /// @param out  receives the result; it is the object that the last call has filled
   /// @throws Error (numerical) when the state cannot be solved.
-  virtual void evaluate(const Seen& at, Values& out) = 0;
+  virtual void evaluate(const DesignView& at, Values& out) = 0;
 };
 
 /// A row of the table of responses: the properties of a response that are available before it is

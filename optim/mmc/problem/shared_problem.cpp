@@ -12,19 +12,22 @@ size_t shared_limit(const Goal& goal) {
   const auto counts = [](const Limit& limit) { return limit.volume && !limit.at_least; };
   const auto found = std::find_if(goal.limits.begin(), goal.limits.end(), counts);
   if (std::count_if(goal.limits.begin(), goal.limits.end(), counts) != 1)
-    throw Error::input("shared mass: every body has one limit of its volume or mass to share");
+    throw Error::input(
+        "shared mass: every body that shares the mass must have exactly one limit of volume or "
+        "mass");
   return static_cast<size_t>(found - goal.limits.begin());
 }
 
 SharedProblem::SharedProblem(std::vector<Part> parts) : parts_(std::move(parts)), first_{0} {
-  if (parts_.empty()) throw Error::input("shared mass: there are no bodies to share it");
+  if (parts_.empty()) throw Error::input("shared mass: there are no bodies that share it");
   shares_.resize(static_cast<Eigen::Index>(parts_.size()));
   for (size_t b = 0; b < parts_.size(); ++b) {
     const MmcProblem& part = *parts_[b].problem;
     const Goal& goal = part.goal();
     of_motion_ = goal.objective->of_motion;
     if (!of_motion_ && (goal.objective->per_load || !goal.objective->needs_state()))
-      throw Error::input("shared mass: every body minimizes the sum of its compliances");
+      throw Error::input(
+          "shared mass: the objective of every body must be the sum of its compliances");
     first_.push_back(first_.back() + part.n_variables());
     n_constraints_ += part.n_constraints();
     shares_[static_cast<Eigen::Index>(b)] = 0;
@@ -32,7 +35,7 @@ SharedProblem::SharedProblem(std::vector<Part> parts) : parts_(std::move(parts))
     if (!parts_[b].shares) continue;
     if (!(parts_[b].full_mass > 0) || !std::isfinite(parts_[b].full_mass))
       throw Error::input("shared mass: the mass of full body " + std::to_string(b + 1) + " is " +
-                         std::to_string(parts_[b].full_mass) + " kg; it is positive");
+                         std::to_string(parts_[b].full_mass) + " kg; it must be positive");
     const size_t limit = shared_limit(goal);
     shares_[static_cast<Eigen::Index>(b)] = parts_[b].full_mass * *goal.limits[limit].volume;
     budget_.back() = part.row_of(limit);
@@ -70,7 +73,7 @@ int SharedProblem::row_of(size_t body, int own) const {
 }
 
 /// Adds the gradients of limited responses of the motion by the designs of all other bodies.
-void SharedProblem::add_slopes_of_others(optim::Response& out) {
+void SharedProblem::add_gradients_of_others(optim::ProblemValues& out) {
   for (size_t b = 0; b < parts_.size(); ++b) {
     const MmcProblem& part = *parts_[b].problem;
     const std::vector<Limit>& limits = part.goal().limits;
@@ -80,16 +83,16 @@ void SharedProblem::add_slopes_of_others(optim::Response& out) {
       const double f = (*part.values(row))[0];
       for (size_t c = 0; c < parts_.size(); ++c) {
         if (c == b) continue;
-        const CellFactors& by = part.motion()->state->limit_slopes(row, b, c);
+        const CellScaleFactors& by = part.motion()->state->limit_gradient(row, b, c);
         out.dg.row(row_of(b, part.row_of(k))).segment(first_[c], first_[c + 1] - first_[c]) =
-            parts_[c].problem->slope_of(by) / f;
+            parts_[c].problem->pull_back_scale_factors(by) / f;
       }
     }
   }
 }
 
-optim::Response SharedProblem::evaluate(const VectorXd& x) {
-  optim::Response out;
+optim::ProblemValues SharedProblem::evaluate(const VectorXd& x) {
+  optim::ProblemValues out;
   out.df.resize(n_variables());
   out.g.setZero(n_constraints());
   out.dg.setZero(n_constraints(), n_variables());
@@ -98,7 +101,7 @@ optim::Response SharedProblem::evaluate(const VectorXd& x) {
     for (size_t b = 0; b < parts_.size(); ++b) parts_[b].problem->look(part_of(x, b));
   for (size_t b = 0; b < parts_.size(); ++b) {
     MmcProblem& part = *parts_[b].problem;
-    const optim::Response own = part.evaluate(part_of(x, b));
+    const optim::ProblemValues own = part.evaluate(part_of(x, b));
     const int first = first_[b], n = first_[b + 1] - first;
     const double share = shares_[static_cast<Eigen::Index>(b)];
     if (of_motion_) {
@@ -117,7 +120,7 @@ optim::Response SharedProblem::evaluate(const VectorXd& x) {
     }
   }
   if (of_motion_) {
-    add_slopes_of_others(out);
+    add_gradients_of_others(out);
     return out;
   }
   out.f = std::log(sum);

@@ -48,7 +48,7 @@ class SharedProblem final : public optim::Problem {
   VectorXd upper() const override;
   VectorXd start() const override;
   /// Computes the combined problem by one evaluation of every subproblem.
-  optim::Response evaluate(const VectorXd& x) override;
+  optim::ProblemValues evaluate(const VectorXd& x) override;
   /// Returns true if the designs of all bodies are acceptable.
   bool acceptable(const VectorXd& x) override;
 
@@ -61,7 +61,7 @@ class SharedProblem final : public optim::Problem {
   int row_of(size_t body, int own) const;
 
  private:
-  void add_slopes_of_others(optim::Response& out);
+  void add_gradients_of_others(optim::ProblemValues& out);
   template <class Of>
   VectorXd joined(Of&& of) const;
 

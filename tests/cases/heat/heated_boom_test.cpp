@@ -1,5 +1,6 @@
-// The heated boom: what its scenes hold, that without a temperature it is the cold boom, its
-// energies, its equivalent static loads and the gradient of its design problem.
+// Shows that the heated boom is built as its case file says, that without a temperature it moves as
+// the cold boom, that its energies are balanced, and that its equivalent static loads and the
+// gradient of its design problem are correct.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +14,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Seconds: a coarse mesh of motion, cells of 1 cm.
+/// Returns changes that make the boom run within seconds: a coarse mesh of the motion, cells of 1
+/// cm.
 Changes quick(const Changes& more = {}) {
   Changes out = {"output.vtk=false",          "body.elements=[5,2]", "body.flow.max_length=0.15",
                  "body.flow.mesh=split",      "design.cell=0.01",    "design.components=[10,1]",
@@ -37,11 +39,11 @@ TEST(HeatedBoom, ScenesAreBuilt) {
                 1e-15);
     EXPECT_EQ(scene.designs.size(), 1u);
     EXPECT_EQ(scene.is_mechanism(), std::string(name) == "heated_boom_held");
-    // The quintic has no kinks, a cosine has two.
-    EXPECT_TRUE(build_mechanism(scene).motion.kinks.empty());
+    // The quintic profile has no discontinuities, the cosine profile has two.
+    EXPECT_TRUE(build_mechanism(scene).motion.discontinuities.empty());
   }
   const Scene cosine = read("heated_boom", {"body.heat.profile=cosine", "body.heat.start=0.113"});
-  EXPECT_EQ(build_mechanism(cosine).motion.kinks, (std::vector<double>{0.113, 0.613}));
+  EXPECT_EQ(build_mechanism(cosine).motion.discontinuities, (std::vector<double>{0.113, 0.613}));
 }
 
 TEST(HeatedBoom, IsNotMadeOfCells) {
@@ -49,7 +51,8 @@ TEST(HeatedBoom, IsNotMadeOfCells) {
     read("heated_boom", {"body.shape=\"q4\"", "body.flow.max_length="});
     FAIL();
   } catch (const Error& error) {
-    EXPECT_TRUE(std::string(error.what()).ends_with("heat does not know cells")) << error.what();
+    EXPECT_TRUE(std::string(error.what()).ends_with("heated bodies cannot move on cells"))
+        << error.what();
   }
 }
 
@@ -60,15 +63,17 @@ TEST(HeatedBoom, HasNoExactGradient) {
       ADD_FAILURE() << asks;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), Error::Kind::input);
-      EXPECT_TRUE(std::string(error.what())
-                      .ends_with("there is no exact gradient: it is not derived for heat "
-                                 "([body.heat])"))
+      EXPECT_TRUE(
+          std::string(error.what())
+              .ends_with(
+                  "no exact gradient: it is not implemented for heated bodies ([body.heat])"))
           << error.what();
     }
   }
 }
 
-// Without a temperature, or without expansion: rotating_plate_v05, but for the order of sums.
+// With rise = 0 or expansion = 0 the heated boom moves as rotating_plate_v05; the tolerances allow
+// for the different order of sums.
 TEST(HeatedBoom, WithoutTemperatureIsTheColdBoom) {
   const Changes both = quick({"time.end=0.12", "time.step=2e-3", "esl.every=0.02"});
   const MotionRecord cold = move(read("rotating_plate_v05", both)).record;
@@ -91,30 +96,34 @@ TEST(HeatedBoom, WithoutTemperatureIsTheColdBoom) {
   }
 }
 
-// Energy, work of the drives, what the material brings along and the power of the heat balance to
-// second order in the step; the root element is not split within this time.
+// The error of the energy balance is of second order in the step. The balance contains the work of
+// the drives, the energy that the material brings along and the power of the heat. The root element
+// is not split within this time.
 TEST(HeatedBoom, EnergyBalanceIsOfSecondOrder) {
-  const auto defect = [](const char* step) {
-    const MotionRecord r = move(read("heated_boom", quick({"time.end=0.08", "body.heat.settle=0.08",
-                                                           std::string("time.step=") + step})))
-                               .record;
+  const auto energy_error = [](const char* step) {
+    const MotionRecord r =
+        move(read("heated_boom", quick({"time.end=0.08", "body.heat.duration=0.08",
+                                        std::string("time.step=") + step})))
+            .record;
     EXPECT_TRUE(r.result.events.empty());
-    EXPECT_GT(r.table.at(kStrainColumn).back(), 0.2);  // J: of the held root
-    return std::abs(r.table.at(kDefectColumn).back());
+    EXPECT_GT(r.table.at(kStrainColumn).back(), 0.2);  // [J], in the held root
+    return std::abs(r.table.at(kEnergyErrorColumn).back());
   };
-  const double coarse = defect("1e-3"), fine = defect("5e-4"), finest = defect("2.5e-4");
+  const double coarse = energy_error("1e-3"), fine = energy_error("5e-4"),
+               finest = energy_error("2.5e-4");
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3) << coarse << " " << fine;
   EXPECT_NEAR(std::log2(fine / finest), 2, 0.3) << fine << " " << finest;
 }
 
-// A split of the hot root element changes neither energies nor momentum, before forces are
-// balanced.
+// A split of the hot root element changes neither energies nor momentum. The values are compared
+// before the forces are balanced again.
 TEST(HeatedBoom, SplitsAreExact) {
   const Scene scene =
       read("heated_boom",
-           quick({"time.end=0.1", "time.step=4e-3", "body.heat.settle=0.2", "esl.every=0.02"}));
+           quick({"time.end=0.1", "time.step=4e-3", "body.heat.duration=0.2", "esl.every=0.02"}));
   Mechanism m = build_mechanism(scene);
-  fem::State x = fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {}).final;
+  fem::State x =
+      fem::integrate(m.model, m.moving_roots, m.motion, [](const fem::MotionStep&) {}).final;
   const fem::Energies before = m.model.energies(x);
   const Vec3 momentum = fem::momentum_in_space(m.model, x);
   fem::change_mesh(m.model, m.model.bodies().back(), fem::MeshChange::insertion, x);
@@ -125,16 +134,17 @@ TEST(HeatedBoom, SplitsAreExact) {
   EXPECT_NEAR((fem::momentum_in_space(m.model, x) - momentum).norm(), 0, 1e-12 * before.kinetic);
 }
 
-/// The design problem of a boom that is hot within 0.1 s.
+/// The design problem of a boom that is heated within 0.1 s.
 struct HotProblem {
   Scene scene = read("heated_boom", quick({"time.end=0.2", "time.step=4e-3", "esl.every=0.04",
-                                           "body.heat.settle=0.1", "design.jitter=0.1",
+                                           "body.heat.duration=0.1", "design.jitter=0.1",
                                            "design.half_thickness=0.014"}));
   MotionOutcome motion = move(scene, true);
   mmc::BodyProblem problem = std::move(build_problems(scene).front());
 };
 
-// The hub's edge keeps its width: all of the growth is held there, by α ΔT(t) of the quintic.
+// The edge at the hub keeps its width, therefore all of the expansion is held there: α ΔT(t) of the
+// quintic profile.
 TEST(HeatedBoom, LoadsKnowTheHeldRoot) {
   const HotProblem hot;
   ASSERT_EQ(hot.motion.loads.front().sets.size(), 5u);
@@ -147,13 +157,13 @@ TEST(HeatedBoom, LoadsKnowTheHeldRoot) {
   }
 }
 
-/// Loads of a boom that is hot within 0.1 s, with full material: half the compliance of each load,
-/// as a part of the strain energy of the motion. The mesh is fine: elements of 2.5 cm, cells of 5
-/// mm.
+/// The loads of a boom that is heated within 0.1 s and has full material. of() returns half the
+/// compliance of each load divided by the strain energy of the motion. The mesh is fine: elements
+/// of 2.5 cm, cells of 5 mm.
 struct EnergyRatios {
   EnergyRatios(const std::string& name)
       : scene(read(name, quick({"time.end=0.2", "time.step=4e-3", "esl.every=0.04",
-                                "body.heat.settle=0.1", "body.elements=[20,8]",
+                                "body.heat.duration=0.1", "body.elements=[20,8]",
                                 "body.flow.max_length=0.04", "design.cell=0.005"}))),
         loads(std::move(move(scene, true).loads.front())) {}
 
@@ -172,8 +182,9 @@ struct EnergyRatios {
   fem::EslSets loads;
 };
 
-// Statics are linear, and the plate is 2 % larger than it was cold. What is left of that is the
-// error of the meshes: with elements of 5 cm ratios are 0.96 to 0.99, with 2.5 cm 1.018 to 1.024.
+// The static analysis is linear, but the plate is 2 % larger than the cold plate. The remaining
+// difference is the error of the meshes: the ratios are 0.96 to 0.99 with elements of 5 cm and
+// 1.018 to 1.024 with 2.5 cm.
 constexpr double kOfSmallStrains = 0.03;
 
 TEST(HeatedBoom, ComplianceIsTheStrainEnergyOfTheMotion) {
@@ -187,8 +198,9 @@ TEST(HeatedBoom, ComplianceIsTheStrainEnergyOfTheMotion) {
   }
 }
 
-// A rigid, cold tip: the far edge keeps its width as well. What it holds back is in the statics:
-// half the compliance of a load is the strain energy of the motion, and is less without it.
+// With a rigid, cold tip the far edge keeps its width, too, and the static loads contain the
+// expansion held there: half the compliance of a load is the strain energy of the motion. Without
+// the expansion held at the tip it is at least a third smaller.
 TEST(HeatedBoom, LoadsKnowTheHeldTip) {
   const EnergyRatios boom("heated_boom_held");
   const VectorXd held = boom.of(boom.loads);
@@ -207,8 +219,9 @@ TEST(HeatedBoom, LoadsKnowTheHeldTip) {
   }
 }
 
-// Taylor test of log f of the real case, along single components. The start is jittered: at the
-// regular layout, where components lie symmetrically upon each other, the order is 1, hot or cold.
+// Taylor test of log f of the shipped case along single components. The start is jittered, because
+// in the regular layout components lie symmetrically on each other, and the remainder then has
+// order 1, hot or cold.
 TEST(HeatedBoom, GradientOfTheDesignProblem) {
   HotProblem hot;
   const mmc::BodyProblem& p = hot.problem;
@@ -217,9 +230,10 @@ TEST(HeatedBoom, GradientOfTheDesignProblem) {
   mmc::ComplianceEvaluator compliance(loads, p.section, p.compliance, full, full);
   const mmc::Ersatz ersatz = mmc::ersatz_of(p);
   const mmc::Plate plate = mmc::plate_of(p);
-  mmc::MmcProblem problem({plate, p.design, ersatz, compliance}, p.bands.front(), p.goal, p.places);
+  mmc::MmcProblem problem({plate, p.design, ersatz, compliance}, p.bands.front(), p.goal,
+                          p.locations);
   const VectorXd x = problem.start();
-  const optim::Response at = problem.evaluate(x);
+  const optim::ProblemValues at = problem.evaluate(x);
   for (const int component : {0, 7, 19}) {
     VectorXd direction = VectorXd::Zero(x.size());
     for (int k = 0; k < Component::kParameters; ++k)

@@ -1,5 +1,5 @@
-// Hot beams of the shipped cases against closed forms: the free beam, the held beam that buckles,
-// clamps that let the section grow or not, and hot loaded beams.
+// Shows that hot beams of the shipped cases agree with closed forms: the free beam, the held beam
+// that buckles, clamps that let the section expand or hold it, and hot beams under loads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ double largest(const std::vector<double>& values) {
   return out;
 }
 
-/// Interpolated where x first passes a value.
+/// Returns y, linearly interpolated where x first passes `value`.
 double at(const std::vector<double>& x, const std::vector<double>& y, double value) {
   for (size_t k = 1; k < x.size(); ++k)
     if ((x[k - 1] - value) * (x[k] - value) <= 0)
@@ -38,8 +38,8 @@ double at(const std::vector<double>& x, const std::vector<double>& y, double val
   return 0;
 }
 
-// T 11.1: ends at α ΔT (X - X_c) at all times, no elastic strain, and the kinetic
-// energy ½ (α Ṫ)² m (l² + h²)/12, all with the thermal force.
+// T 11.1: the ends lie at α ΔT (X - X_c) at all times, there is no elastic strain, and the kinetic
+// energy is ½ (α Ṫ)² m (l² + h²)/12. The thermal force is switched on.
 TEST(FreeBeam, GrowsAsTheClosedFormSays) {
   for (const double rise : {50.0, 100.0, 200.0}) {
     const MotionRecord r =
@@ -64,17 +64,19 @@ TEST(FreeBeam, GrowsAsTheClosedFormSays) {
   }
 }
 
-// Without the thermal force strains accelerate the ends: ρ L²/8 · α T̈ / E of them.
+// Without the thermal force only elastic strains, of size ρ L²/8 · α T̈ / E, accelerate the ends.
 TEST(FreeBeam, WithoutThermalForceStrainsAccelerateIt) {
   const MotionRecord r = motion_of("free_beam_heated", {"body.heat.force=false"});
-  const double alone = 7200 / 8.0 * 1e-4 * 200 * 12 / 0.25 / 7e8;  // at the start, quasi-static
+  // quasi-static strain at the start
+  const double alone = 7200 / 8.0 * 1e-4 * 200 * 12 / 0.25 / 7e8;
   const double strain = largest(r.table.at("beam.max_elastic_strain"));
   EXPECT_GT(strain, 0.5 * alone);
-  EXPECT_LT(strain, 3 * alone);  // twice for a sudden load, and what is linear across the element
+  // a factor of 2 for a sudden load; strains vary linearly across the element
+  EXPECT_LT(strain, 3 * alone);
 }
 
-// Between two pins nothing gives way: buckled at α ΔT = π² h²/(12 L²). Beyond, the middle moves by
-// A = (2 L/π) √(α (ΔT - ΔT_cr)) (first mode, constant axial force).
+// A beam between two immovable pins buckles at α ΔT = π² h²/(12 L²). Beyond this temperature the
+// middle moves by A = (2 L/π) √(α (ΔT - ΔT_cr)) (first mode, constant axial force).
 TEST(HeldBeam, BucklesAndItsBranchIsFollowed) {
   const PathRecord r = path_of("beam_heated_held", {"load.force=[0, -0.05]"});
   EXPECT_TRUE(r.result.completed);
@@ -87,21 +89,21 @@ TEST(HeldBeam, BucklesAndItsBranchIsFollowed) {
     const double expected = 2 / kPi * std::sqrt(80e-6 * (rise - critical));
     EXPECT_NEAR(-at(T, w, rise) / expected, 1, 0.03) << rise;
   }
-  // The square of the deflection is linear in the temperature: where it would vanish.
+  // The square of the deflection is linear in the temperature; it is extrapolated to zero.
   const double w1 = std::pow(at(T, w, 36), 2), w2 = std::pow(at(T, w, 48), 2);
   EXPECT_NEAR((36 * w2 - 48 * w1) / (w2 - w1), critical, 0.02 * critical);
 }
 
-// T Fig. 1. A partial clamp lets the section grow: no stress. A full one keeps its size; what is
-// left of that decays along the beam as exp(-x/λ).
+// T Fig. 1. A partial clamp lets the section expand, therefore there is no stress. A full clamp
+// keeps the size of the section; its effect decays along the beam as exp(-x/λ).
 TEST(Clamp, PartialIsFreeOfStressAndFullTapers) {
   const PathRecord partial = path_of("clamped_expansion");
   EXPECT_NEAR(partial.table.at("beam.end_ux").back(), 0.01, 1e-11);
   EXPECT_NEAR(partial.table.at("beam.end_uy").back(), 0, 1e-11);
   EXPECT_LE(largest(partial.table.at("beam.max_elastic_strain")), 1e-12);
-  // The section that is held is too small by e = (1 - s⁻²)/2, and Poisson's effect makes the beam
-  // longer by s ν e λ, λ = h √(G/(12E)); the axis that may not stretch takes some of it back,
-  // within the first element.
+  // The held section is too small by e = (1 - s⁻²)/2, and Poisson's effect makes the beam longer by
+  // s ν e λ, λ = h √(G/(12E)). In the mode "full" the axis may not stretch at the clamp, either,
+  // which makes the beam shorter by less than the expansion of the first element.
   const double s = 1.02, e = 0.5 * (1 - 1 / (s * s)), lambda = 0.1 * std::sqrt(1 / (2.6 * 12));
   const PathRecord edge = path_of("clamped_expansion", {"joint.mode=edge"}),
                    full = path_of("clamped_expansion", {"joint.mode=full"});
@@ -116,8 +118,9 @@ TEST(Clamp, PartialIsFreeOfStressAndFullTapers) {
   }
 }
 
-// A hot beam on pin and roller under a growing load: of its cold deflection it shows s^(2-p), the
-// load times s in a geometry s times as large: small deflections say so exactly.
+// A hot beam on pin and roller. Its small deflection divided by that of the cold beam is s^(2-p),
+// where s is the thermal stretch and p depends on `volume`: "grown", "grown_plane" and "reference"
+// give 1/s, 1 and s². This law is exact for small deflections.
 TEST(HotBeam, SmallDeflectionGoesWithThePowerOfTheStretch) {
   const auto deflection = [](const char* rise, const char* volume) {
     return path_of(
@@ -133,7 +136,8 @@ TEST(HotBeam, SmallDeflectionGoesWithThePowerOfTheStretch) {
   EXPECT_NEAR(deflection("200", "reference") / cold, s * s, 1e-5);
 }
 
-// Loads before temperatures or temperatures before loads: the same equilibrium in the end.
+// The equilibrium does not depend on whether loads grow before temperatures, after them, or
+// together with them.
 TEST(HotBeam, OrderOfLoadAndTemperatureIsOfNoMatter) {
   const auto deflection = [](const char* grows) {
     return path_of("beam_heated_static",
@@ -162,7 +166,7 @@ elements = 4
 [body.heat]
 expansion = 1e-4
 rise = 100.0
-settle = 0.1
+duration = 0.1
 [[measure]]
 body = "arm"
 quantities = ["end_displacements"]
@@ -172,7 +176,8 @@ body = "arm"
 edge = "root"
 )toml";
 
-// A beam in a hub and a beam on a rigid body that is driven like the hub do the same.
+// A beam welded to a hub and a beam welded to a rigid body that is driven like the hub have the
+// same motion.
 TEST(HotBeam, RidesOnARigidBodyAsInAHub) {
   const auto end = [](const std::string& rest, const std::string& weld) {
     const Scratch scratch;
@@ -198,7 +203,7 @@ TEST(HotBeam, RidesOnARigidBodyAsInAHub) {
   }
 }
 
-// An arc of a quarter circle, free but for its supports, grows by α ΔT in all directions.
+// An arc of a quarter circle whose supports do not hinder it expands by α ΔT in all directions.
 TEST(HotBeam, ArcGrowsWithoutStress) {
   const PathRecord r =
       path_of("beam_heated_static",
@@ -206,7 +211,8 @@ TEST(HotBeam, ArcGrowsWithoutStress) {
                "load=[]", "joint.1.components=[\"y\"]", "body.elements=6"});
   const double R = 2 / kPi;
   EXPECT_LE(largest(r.table.at("beam.max_elastic_strain")), 1e-11);
-  // Root held, the end kept at its height: the grown arc turns about the root until it is there.
+  // The root is held and the end keeps its height, therefore the expanded arc is rotated about the
+  // root until its end is at this height.
   const double far = std::sqrt(2.0) * R, s = 1.008;
   const double angle = std::asin(1 / (std::sqrt(2.0) * s));
   EXPECT_NEAR(r.table.at("beam.end_ux").back(), s * far * std::cos(angle) - R, 1e-9);

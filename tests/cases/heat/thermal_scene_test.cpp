@@ -1,4 +1,4 @@
-// Beams, heat and measures in case files: what they mean, and what is refused.
+// Shows the meaning of beams, heat and measures in case files, and that wrong input is refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,20 +20,20 @@ namespace {
 TEST(ThermalScene, BeamIsReadAndBuilt) {
   const Scene scene = read("slider_crank_heated");
   const Body& rod = scene.body("rod");
-  EXPECT_EQ(rod.place(), fem::TermPlace::beam);
+  EXPECT_EQ(rod.term_domain(), fem::TermDomain::beam);
   EXPECT_EQ(rod.elements, (std::array{6, 1}));
   EXPECT_EQ(rod.width, 5.76e-3);     // in the plane of the motion
-  EXPECT_EQ(rod.thickness, 5.5e-3);  // across it
+  EXPECT_EQ(rod.thickness, 5.5e-3);  // across the plane
   const Mechanism mechanism = build_mechanism(scene);
   const fem::Body& built = mechanism.model.body("rod");
   const auto& beam = dynamic_cast<const fem::AncfBeam&>(*built.element);
   EXPECT_EQ(beam.height(), 5.76e-3);
   EXPECT_EQ(built.section->thickness, 5.5e-3);
-  // At rest where the case puts it, with the velocities of the rigid mechanism: the crank pin goes
-  // up at r ω, the slider rests.
+  // The start is undeformed at the position of the case file and has the velocities of the rigid
+  // mechanism: the crank pin moves up at r ω, the slider is static.
   fem::Workspace& model = const_cast<fem::Workspace&>(mechanism.model);
-  const fem::State x = fem::start_state(model, mechanism.growths, 0, mechanism.motion.start,
-                                        mechanism.motion.placement);
+  const fem::State x = fem::start_state(model, mechanism.moving_roots, 0, mechanism.motion.start,
+                                        mechanism.motion.body_poses);
   const fem::PointMotion pin = fem::point_motion(built, x, {0, 0}),
                          middle = fem::point_motion(built, x, {0.152, 0}),
                          slider = fem::point_motion(built, x, {0.304, 0});
@@ -59,15 +59,17 @@ TEST(ThermalScene, HeatOfABodyIsThatOfTheModel) {
               1e-12);
   EXPECT_EQ(hot->temperature(1.5).value, 50);
   EXPECT_EQ(hot->expansion, 80e-6);
-  // Steps land where the acceleration of the temperature jumps: s'' is 12 at first and 0 at last.
-  const auto stops_at = [](const Mechanism& m, double kink) {
-    return std::any_of(m.motion.kinks.begin(), m.motion.kinks.end(),
-                       [&](double t) { return std::abs(t - kink) < 1e-12; });
+  // Steps end where the acceleration of the temperature jumps: s'' jumps by 12 at the start of the
+  // profile and is 0 at its end.
+  const auto stops_at = [](const Mechanism& m, double discontinuity) {
+    return std::any_of(m.motion.discontinuities.begin(), m.motion.discontinuities.end(),
+                       [&](double t) { return std::abs(t - discontinuity) < 1e-12; });
   };
   EXPECT_TRUE(stops_at(mechanism, 0.2));
   const Mechanism linear = build_mechanism(
       read("slider_crank_heated", {"body.heat.start=0.2", "body.heat.profile=linear"}));
-  for (const double kink : {0.2, 1.2}) EXPECT_TRUE(stops_at(linear, kink)) << kink;
+  for (const double discontinuity : {0.2, 1.2})
+    EXPECT_TRUE(stops_at(linear, discontinuity)) << discontinuity;
 }
 
 TEST(ThermalScene, DriveMaySayTheTemperature) {
@@ -79,20 +81,21 @@ TEST(ThermalScene, DriveMaySayTheTemperature) {
   const fem::Motion at = mechanism.model.body("rod").heat->temperature(0.5);
   EXPECT_NEAR(at.value, 20 * std::sin(0.5), 1e-13);
   EXPECT_NEAR(at.acceleration, -20 * std::sin(0.5), 1e-13);
-  EXPECT_TRUE(mechanism.motion.kinks.empty());
+  EXPECT_TRUE(mechanism.motion.discontinuities.empty());
 }
 
 TEST(ThermalScene, ColdSceneHasNothingOfIt) {
   const Mechanism cold = build_mechanism(read("four_bar"));
   for (const fem::Body& body : cold.model.bodies()) EXPECT_FALSE(body.heat.has_value());
-  EXPECT_TRUE(cold.model.links().empty());
+  EXPECT_TRUE(cold.model.force_elements().empty());
   EXPECT_TRUE(cold.motion.stops.empty());
 }
 
-// Thermal force: a link that is there when asked for, and where a temperature accelerates.
+// The thermal force is a force element. It exists if the case requests it and if the profile has an
+// acceleration of the temperature.
 TEST(ThermalScene, ThermalForceIsThereWhenItActs) {
   const auto links = [](const Changes& changes) {
-    return build_mechanism(read("free_beam_heated", changes)).model.links().size();
+    return build_mechanism(read("free_beam_heated", changes)).model.force_elements().size();
   };
   EXPECT_EQ(links({}), 1u);
   EXPECT_EQ(links({"body.heat.force=false"}), 0u);
@@ -104,8 +107,8 @@ TEST(ThermalScene, UndeformedArcLiesOnItsCircle) {
   body.length = 2;
   body.arc = 0.5 * std::numbers::pi;
   const double R = 2 / body.arc;
-  EXPECT_NEAR((undeformed_place(body, {2, 0}) - Vec2(R, R)).norm(), 0, 1e-14);
-  EXPECT_NEAR((undeformed_place(body, {1, 0.1}) -
+  EXPECT_NEAR((undeformed_location(body, {2, 0}) - Vec2(R, R)).norm(), 0, 1e-14);
+  EXPECT_NEAR((undeformed_location(body, {1, 0.1}) -
                (Vec2(0, R) + (R - 0.1) * Vec2(std::sin(1 / R), -std::cos(1 / R))))
                   .norm(),
               0, 1e-14);
@@ -120,8 +123,9 @@ TEST(ThermalScene, ErrorsNameFileLineAndKey) {
   const std::string file = scratch.write("wrong.toml", text);
   const std::string error =
       testing::error_of(Error::Kind::input, [&] { read_scene(io::CaseFile(file)); });
-  EXPECT_TRUE(testing::says(error, "wrong.toml:" + std::to_string(line) +
-                                       ":11: body.heat.profile = \"abrupt\": a profile is one of"))
+  EXPECT_TRUE(
+      testing::mentions(error, "wrong.toml:" + std::to_string(line) +
+                                   ":11: body.heat.profile = \"abrupt\": a profile is one of"))
       << error;
 }
 
@@ -134,11 +138,12 @@ struct Bad {
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.what; }
 class BadThermal : public ::testing::TestWithParam<Bad> {};
 
-TEST_P(BadThermal, IsRefusedAtItsPlace) {
+TEST_P(BadThermal, IsRefusedAtItsLocation) {
   const std::string text =
       testing::error_of(Error::Kind::input, [&] { read(GetParam().scene, GetParam().changes); });
-  EXPECT_TRUE(testing::says(text, GetParam().message)) << text;
-  EXPECT_TRUE(text.starts_with("--set ") || testing::says(text, ".toml:")) << text;  // the place
+  EXPECT_TRUE(testing::mentions(text, GetParam().message)) << text;
+  EXPECT_TRUE(text.starts_with("--set ") || testing::mentions(text, ".toml:"))
+      << text;  // the location of the error
 }
 
 constexpr const char* kFree = "free_beam_heated";
@@ -149,19 +154,19 @@ const std::vector<Bad> kBad = {
     {"two_models",
      kFree,
      {"body.terms=[\"inertia\", \"gcm\", \"ecm\"]"},
-     "\"ecm\" stands in place of \"gcm\""},
-    {"no_inertia", kFree, {"body.terms=[\"gcm\"]"}, "a body that moves has \"inertia\""},
+     "\"ecm\" and \"gcm\" are alternatives"},
+    {"no_inertia", kFree, {"body.terms=[\"gcm\"]"}, "a body that moves needs \"inertia\""},
     {"plate_elements", kFree, {"body.elements=[2, 1]"}, "body.elements"},
     {"thickness", kFree, {"body.thickness=0.1"}, "a beam has a `height`"},
     {"beam_in_space", kFree, {"body.space=space"}, "body.space"},
-    {"flow", kFree, {"body.flow={speed=0.1, max_length=1}"}, "material flows through"},
+    {"flow", kFree, {"body.flow={speed=0.1, max_length=1}"}, "element = \"ale_ancf_plate\""},
     {"lines", kFree, {"body.line=[{index=0, free=true}]"}, "no [[body.line]]"},
     {"tight_arc",
      kFree,
      {"body.arc=6", "body.height=0.4"},
-     "half the height stays below the radius"},
-    {"no_expansion", kFree, {"body.heat={rise=1, settle=1}"}, "body.heat.expansion is missing"},
-    {"no_settle", kFree, {"body.heat={rise=1, expansion=1e-4}"}, "body.heat.settle is missing"},
+     "half of the height of the beam must be less than the radius"},
+    {"no_expansion", kFree, {"body.heat={rise=1, duration=1}"}, "body.heat.expansion is missing"},
+    {"no_settle", kFree, {"body.heat={rise=1, expansion=1e-4}"}, "body.heat.duration is missing"},
     {"profile",
      kFree,
      {"body.heat.profile=cubic"},
@@ -173,17 +178,17 @@ const std::vector<Bad> kBad = {
     {"profile_of_drive",
      kCrank,
      {"body.heat.rise=turn"},
-     "the drive of `rise` says how the temperature goes"},
+     "the drive of `rise` determines the temperature"},
     {"profile_at_rest", kHeld, {"body.heat.profile=linear"}, "static.grows"},
-    {"force_at_rest", kHeld, {"body.heat.force=true"}, "nothing is in motion"},
+    {"force_at_rest", kHeld, {"body.heat.force=true"}, "body.heat.force"},
     {"grows", kHeld, {"static.grows=everything"}, "'loads', 'temperatures', 'both'"},
-    {"no_load_grows", kHeld, {"static.grows=both", "load=[]"}, "there is no load"},
+    {"no_load_grows", kHeld, {"static.grows=both", "load=[]"}, "the case has no load"},
     {"cold_grows",
      "cantilever_roll_up",
      {"static.grows=temperatures"},
      "no body has a temperature"},
     {"quantity", kFree, {"measure.quantities=[\"colour\"]"}, "a measured quantity"},
-    {"velocity_at_rest", kHeld, {"measure.quantities=[\"end_velocity\"]"}, "nothing moves"},
+    {"velocity_at_rest", kHeld, {"measure.quantities=[\"end_velocity\"]"}, "has no velocities"},
     {"cold_temperature",
      "four_bar",
      {"measure=[{body=\"rocker\", quantities=[\"temperature\"]}]"},
@@ -191,16 +196,16 @@ const std::vector<Bad> kBad = {
     {"load",
      kHeld,
      {"load=[{type=\"edge\", body=\"beam\", edge=\"free_end\", force=[0, 1]}]"},
-     "a beam is loaded by \"point\", \"line\" or \"torque\""},
+     "the load of a beam is \"point\", \"line\" or \"torque\""},
     {"design",
      kCrank,
      {"design=[{body='rod', cell=0.001, components=[4, 1], max_volume=0.5, min_thickness=0.0005}]",
       "esl.every=0.1"},
-     "plates are designed, beams are not"},
+     "beams cannot be designed"},
     {"force_with_flow",
      "rotating_plate_v05",
-     {"body.heat={expansion=1e-5, rise=10, settle=1, force=true}"},
-     "no thermal force where material flows"},
+     {"body.heat={expansion=1e-5, rise=10, duration=1, force=true}"},
+     "cannot be used with material flow"},
 };
 INSTANTIATE_TEST_SUITE_P(Inputs, BadThermal, ::testing::ValuesIn(kBad),
                          [](const auto& test) { return std::string(test.param.what); });

@@ -1,5 +1,6 @@
-// Mechanisms whose joints hold more than rigid bodies have freedoms, but no more than bodies that
-// bend: they run, and do what is known of them.
+// Shows that mechanisms run correctly whose joints constrain more than the degrees of freedom of
+// rigid bodies, but not more than those of flexible bodies, and that other overdetermined
+// mechanisms are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ std::string joint(const std::string& type, const std::string& more) {
   return "\n[[joint]]\ntype = \"" + type + "\"\n" + more + "\n";
 }
 
-/// L = 1.2 m, 0.02 m high, 0.03 m wide.
+/// Returns a member of 1.2 m length, 0.02 m height and 0.03 m width.
 std::string member(const std::string& name, int elements) {
   return "\n[[body]]\nname = \"" + name +
          "\"\nelement = \"ancf_beam\"\nterms = [\"ecm\"]\nlength = 1.2\nheight = 0.02\n"
@@ -32,9 +33,10 @@ std::string member(const std::string& name, int elements) {
          std::to_string(elements) + "\n";
 }
 
-// A column and a beam, clamped to each other, on two pins; a load at 0.2 L of the beam. Lee, Manuel
-// & Rossow (1968), J. Eng. Mech. Div. 94, 521-547; critical load 18.552 E I / L² with A L² =
-// 43200 I: Schweizerhof & Wriggers (1986), Comput. Methods Appl. Mech. Eng. 59, 261-279.
+// A column and a beam, welded to each other at the corner, on two pins, with a load at 0.2 L of the
+// beam (Lee's frame). Source: Lee, Manuel & Rossow (1968), J. Eng. Mech. Div. 94, 521-547. The
+// reference value is the critical load 18.552 E I / L² for A L² = 43200 I: Schweizerhof & Wriggers
+// (1986), Comput. Methods Appl. Mech. Eng. 59, 261-279.
 TEST(Indeterminate, LeesFrameSnapsAtItsCriticalLoad) {
   const Scene scene = scene_of(
       "[static]\npath = \"arc_length\"\n" + member("column", 20) +
@@ -50,7 +52,8 @@ TEST(Indeterminate, LeesFrameSnapsAtItsCriticalLoad) {
   require_buildable(PreparedCase(scene));
   EXPECT_TRUE(fem::RigidMotion(rigid_kinematics(scene)).is_indeterminate());
   Mechanism m = build_mechanism(scene);
-  fem::State x = fem::start_state(m.model, m.growths, 0, fem::Start::rigid, m.motion.placement);
+  fem::State x =
+      fem::start_state(m.model, m.moving_roots, 0, fem::Start::rigid, m.motion.body_poses);
   m.model.scale_loads(0);
   fem::StaticSettings settings;
   settings.path = fem::StaticSettings::Path::arc_length;
@@ -66,7 +69,7 @@ TEST(Indeterminate, LeesFrameSnapsAtItsCriticalLoad) {
   EXPECT_NEAR(critical * 2500 * 1.2 * 1.2 / EI / 18.552, 1, 0.01);
 }
 
-/// Cranks of 0.2 m on pivots 0.5 m apart, upright at the start; the first is driven.
+/// Returns cranks of 0.2 m on pivots 0.5 m apart, upright at the start; the first is driven.
 std::string cranks(int n, const std::string& law) {
   std::string out = "[time]\nend = 0.5\nstep = 1e-3\n[[drive]]\nname = \"turn\"\nformula = \"" +
                     law + "\"\n" +
@@ -88,23 +91,25 @@ const char* const kCoupler =
     "\"membrane\"]\nlength = 1.0\nwidth = 0.04\nthickness = 0.01\ndensity = 2700\n"
     "youngs_modulus = 7e9\npoisson_ratio = 0.3\nelements = [8, 1]\nposition = [0.0, 0.2]\n";
 
-// The third crank says what the other two say already: all turn alike, the coupler keeps upright.
+// The third crank is redundant for rigid bodies: all cranks turn by equal angles, and the coupler
+// keeps its orientation.
 TEST(Indeterminate, ParallelogramOfThreeCranks) {
   const Scene scene = scene_of(cranks(3, "pi/2 + 3*t^2") + kCoupler);
   require_buildable(PreparedCase(scene));
   Mechanism m = build_mechanism(scene);
   EXPECT_EQ(m.motion.start, fem::Start::at_rest);
   double worst = 0;
-  fem::integrate(m.model, m.growths, m.motion, [&](const fem::MotionStep& step) {
+  fem::integrate(m.model, m.moving_roots, m.motion, [&](const fem::MotionStep& step) {
     const double angle = std::numbers::pi / 2 + 3 * step.x.t * step.x.t;
     const Vec2 wanted = Vec2(0.75, 0) + 0.2 * Vec2(std::cos(angle), std::sin(angle));
     const Vec2 point = fem::point_position(step.model.body("coupler"), step.x, {0.75, 0}).head<2>();
     worst = std::max(worst, (point - wanted).norm());
   });
-  EXPECT_LT(worst, 1e-5);  // inertia bends it: m a / k = 1 kg 3 m/s² / 3e5 N/m
+  EXPECT_LT(worst, 1e-5);  // inertia bends the coupler by m a / k = 1 kg 3 m/s² / 3e5 N/m
 }
 
-// Two motors that go against each other stretch what a rigid coupler could not be.
+// Two motors that turn against each other stretch the coupler, which a rigid coupler would not
+// allow.
 TEST(Indeterminate, DrivesMayContradictTheRigidModel) {
   const Scene scene =
       scene_of(cranks(3, "pi/2 - 0.001*sin(3*t)") + kCoupler +
@@ -114,9 +119,9 @@ TEST(Indeterminate, DrivesMayContradictTheRigidModel) {
   Mechanism m = build_mechanism(scene);
   EXPECT_EQ(m.motion.start, fem::Start::rigid);
   const fem::MotionResult end =
-      fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {});
+      fem::integrate(m.model, m.moving_roots, m.motion, [](const fem::MotionStep&) {});
   EXPECT_GT(end.start_change, 1e-4);
-  // Quasi-static: the length between the outer pins shrinks by 2 r Δφ of 1 m.
+  // Quasi-static reference: the distance of 1 m between the outer pins shrinks by 2 r Δφ.
   const double strain = -2 * 0.2 * 0.001 * std::sin(1.5), EA = 7e9 * 0.04 * 0.01;
   EXPECT_NEAR(m.model.energies(end.final).strain / (0.5 * EA * strain * strain), 1, 0.05);
 }
@@ -128,7 +133,7 @@ TEST(Indeterminate, RigidBodiesAreRefusedAsBefore) {
   EXPECT_THROW(require_buildable(PreparedCase(scene)), Error);
 }
 
-// What bends may be held too often as well: the same pin twice.
+// Flexible bodies, too, are refused if they are held redundantly: here one pin is given two times.
 TEST(Indeterminate, FlexibleBodiesAreRefusedWhereTheyAreHeldTwice) {
   const Scene scene = scene_of(cranks(2, "pi/2 + 3*t^2") + kCoupler +
                                joint("revolute",
@@ -143,12 +148,12 @@ TEST(Indeterminate, FlexibleBodiesAreRefusedWhereTheyAreHeldTwice) {
   }
 }
 
-std::string strip_between_hubs(const std::string& place) {
+std::string strip_between_hubs(const std::string& location) {
   return "[time]\nend = 0.5\nstep = 1e-3\n[[drive]]\nname = \"left\"\nformula = "
          "\"0.01*sin(pi*t)^2\"\n[[drive]]\nname = \"right\"\nformula = \"-0.01*sin(pi*t)^2\"\n"
          "[[hub]]\nname = \"a\"\nangle = \"left\"\n[[hub]]\nname = \"b\"\nangle = \"right\"\n"
          "position = " +
-         place +
+         location +
          "\n[[body]]\nname = \"strip\"\nelement = \"ancf_plate\"\nterms = [\"inertia\", "
          "\"membrane\"]\nlength = 0.5\nwidth = 0.03\nthickness = 0.01\ndensity = 2700\n"
          "youngs_modulus = 7e9\npoisson_ratio = 0.3\nelements = [12, 1]\n" +
@@ -156,14 +161,14 @@ std::string strip_between_hubs(const std::string& place) {
          joint("weld", "body = \"strip\"\nedge = \"free_end\"\nto = \"b\"");
 }
 
-// Ends turned by ±θ bend a beam into a parabola, θ L/4 high; clamped edges that cannot contract
-// across stiffen it at its ends, and its tension everywhere, by less than 2 %.
+// Ends rotated by ±θ bend a beam into a parabola of height θ L/4. The clamped edges, which cannot
+// contract, and the tension stiffen the beam by less than 2 %, which is the tolerance.
 TEST(Indeterminate, PlateBetweenTwoHubs) {
   const Scene scene = scene_of(strip_between_hubs("[0.5, 0.0]"));
   require_buildable(PreparedCase(scene));
   Mechanism m = build_mechanism(scene);
   const fem::MotionResult end =
-      fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {});
+      fem::integrate(m.model, m.moving_roots, m.motion, [](const fem::MotionStep&) {});
   const double height = fem::point_position(m.model.body("strip"), end.final, {0.25, 0}).y();
   EXPECT_NEAR(height / (0.01 * 0.5 / 4), 1, 0.02);
 }
@@ -174,8 +179,7 @@ TEST(Indeterminate, PlateThatDoesNotReachItsHub) {
     FAIL() << "not refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_NE(std::string(error.what()).find("misses by 0.02 m"), std::string::npos)
-        << error.what();
+    EXPECT_NE(std::string(error.what()).find("error of 0.02 m"), std::string::npos) << error.what();
   }
 }
 

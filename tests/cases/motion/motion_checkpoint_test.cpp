@@ -1,4 +1,4 @@
-// Checkpoints of motions that cannot be used are refused, and why is said.
+// Shows that checkpoints of motions that cannot be used are refused with the reason.
 #include "cases/output/motion_checkpoint.h"
 
 #include <gtest/gtest.h>
@@ -78,20 +78,20 @@ TEST_F(Checkpoints, AreThoseOfOneVersion) {
   const size_t at = other.find(kVersion), end = other.find('\n');
   other.replace(at, end - at, "0.0.1");
   put(other);
-  std::string expected = "it was written by version 0.0.1, this is ";
+  std::string expected = "it was written by version 0.0.1, but the program has version ";
   expected += kVersion;
   EXPECT_EQ(refusal(), expected);
   put("flexmorph motion 0, " + whole.substr(whole.find(kVersion)));
-  EXPECT_EQ(refusal(), "it is none of this format");
+  EXPECT_EQ(refusal(), "it does not have the format of a checkpoint");
 }
 
 TEST_F(Checkpoints, AreThoseOfOneCaseAndDesign) {
-  EXPECT_EQ(refusal("another design"), "it is that of another case or design");
+  EXPECT_EQ(refusal("another design"), "it belongs to another case or design");
   folder_.write_text("inputs/turn.csv", "0, 0\n");
-  EXPECT_EQ(refusal(), "it is that of another case or design");
+  EXPECT_EQ(refusal(), "it belongs to another case or design");
   one().write(memory_, {});
   folder_.write_text("inputs/turn.csv", "0, 1\n");
-  EXPECT_EQ(refusal(), "it is that of another case or design");
+  EXPECT_EQ(refusal(), "it belongs to another case or design");
 }
 
 TEST_F(Checkpoints, NeedTheirFrames) {
@@ -100,7 +100,7 @@ TEST_F(Checkpoints, NeedTheirFrames) {
   std::string why;
   EXPECT_EQ(one().read(why), memory_) << why;
   std::filesystem::remove(folder_.path() + "/motion/a.vtu");
-  EXPECT_EQ(refusal(), "motion/a.vtu is missing");
+  EXPECT_EQ(refusal(), "the file motion/a.vtu is missing");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The motion platform of P section 4.3 against the closed form of its inverse kinematics.
+// Shows that the motion platform of P section 4.3 follows the closed form of its inverse
+// kinematics.
 
 #include <gtest/gtest.h>
 
@@ -17,14 +18,14 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 const Vec2 kA(-0.4, 0), kB(0.4, 0), kToC(-0.15, 0), kToD(0.15, 0);
 
-/// P (36), (37).
+/// Returns the position of the platform at time t, P (36), (37).
 Vec2 center(double t) {
   const double theta = -2 * kPi * std::pow(t - 0.5, 3) + 1.5 * kPi * t - kPi / 4;
   return {0.5 * std::cos(kPi - theta), 0.5 * std::sin(kPi - theta) + 0.4};
 }
 Vec2 bar1(double t) { return center(t) + kToC - kA; }
 Vec2 bar2(double t) { return center(t) + kToD - kB; }
-/// 0.05 m of each end lie in the bearings.
+/// Length of the bar between the bearings; 0.05 m of each end lie in the bearings.
 double length1(double t) { return bar1(t).norm() - 0.1; }
 double length2(double t) { return bar2(t).norm() - 0.1; }
 
@@ -44,14 +45,16 @@ TEST_F(MotionPlatform, LengthsAndAngleAreThoseOfInverseKinematics) {
     EXPECT_NEAR(l2(t).value, length2(t), 1e-12) << t;
     EXPECT_NEAR(angle(t).value, std::atan2(bar1(t).y(), bar1(t).x()), 1e-12) << t;
   }
-  // Rates belong to the values: the quintics are smooth to the second derivative.
+  // Rates and accelerations are the derivatives of the values: the quintics are smooth up to the
+  // second derivative.
   const double d = 1e-4;
   for (double t = 0.01; t < 0.99; t += 0.0371) {
     EXPECT_NEAR(l1(t).rate, (length1(t + d) - length1(t - d)) / (2 * d), 1e-7);
     EXPECT_NEAR(l1(t).acceleration, (length1(t + d) - 2 * length1(t) + length1(t - d)) / (d * d),
                 1e-5);
   }
-  // The longest: 0.8717 m, 0.9717 m between the bearings; the same for both bars by symmetry.
+  // The largest length is 0.8717 m, which is 0.9717 m minus 0.1 m in the bearings. Both bars have
+  // the same limits because of symmetry.
   for (const char* bar : {"bar1", "bar2"}) {
     EXPECT_NEAR(scene_.body(bar).longest(scene_.time.end), 0.8717, 5e-5);
     EXPECT_NEAR(scene_.body(bar).shortest(scene_.time.end), std::hypot(0.25, 0.4) - 0.1, 1e-10);
@@ -89,14 +92,15 @@ TEST_F(MotionPlatform, WeldedEndsOfDesignsAreSolid) {
   }
 }
 
-/// The scene with plates of another stiffness, moved; what the observer sees of the platform.
+/// Returns the largest distance of the platform from the rigid path if the stiffness of the plates
+/// is multiplied by `stiffness`.
 double largest_error(double stiffness, double end) {
   Scene scene = read("motion_platform", {"time.step=2e-3"});
   for (Body& b : scene.bodies) b.youngs_modulus *= stiffness;
   Mechanism mechanism = build_mechanism(scene);
   mechanism.motion.end = end;
   double worst = 0;
-  fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
+  fem::integrate(mechanism.model, mechanism.moving_roots, mechanism.motion,
                  [&](const fem::MotionStep& step) {
                    const fem::FrameMotion f = fem::frame_of(step.model.body("platform"), step.x);
                    worst = std::max(worst, (f.origin - center(step.x.t)).norm());
@@ -104,7 +108,8 @@ double largest_error(double stiffness, double end) {
   return worst;
 }
 
-// Stiffer bars carry the platform along the rigid path: what they miss falls with 1/E.
+// In the limit of stiff bars the platform follows the rigid path: its distance from the path
+// decreases with 1/E.
 TEST_F(MotionPlatform, StiffLimitIsTheRigidMotion) {
   const double end = 0.3;
   double before = largest_error(10, end);
@@ -116,7 +121,7 @@ TEST_F(MotionPlatform, StiffLimitIsTheRigidMotion) {
   }
 }
 
-/// Times at which a length crosses a value upwards (sign 1) or downwards (-1).
+/// Returns the times at which a length crosses a value upwards (sign 1) or downwards (-1).
 std::vector<double> crossings(double (*length)(double), double value, int sign) {
   std::vector<double> out;
   const auto past = [&](double t) { return sign * (length(t) - value) > 0; };
@@ -130,10 +135,11 @@ std::vector<double> crossings(double (*length)(double), double value, int sign) 
   return out;
 }
 
-/// Insertions and removals that the length law demands, one after the other: (time, change).
+/// Returns the insertions and removals (time, change) that follow from the length law, in order of
+/// time.
 std::vector<std::pair<double, fem::MeshChange>> demanded(double (*length)(double), double start,
                                                          int elements) {
-  constexpr double kMost = 0.1, kLeast = 0.03;
+  constexpr double kMaximum = 0.1, kMinimum = 0.03;
   std::vector<std::pair<double, fem::MeshChange>> out;
   std::vector<double> inner(static_cast<size_t>(elements - 1), start / elements);
   double t = 0;
@@ -145,14 +151,14 @@ std::vector<std::pair<double, fem::MeshChange>> demanded(double (*length)(double
   while (true) {
     double next = 2;
     fem::MeshChange change{};
-    for (const double up : crossings(length, rest() + kMost, 1))
+    for (const double up : crossings(length, rest() + kMaximum, 1))
       if (up > t + 1e-9 && up < next) next = up, change = fem::MeshChange::insertion;
-    if (!inner.empty() && kLeast + inner.front() < 0.9 * kMost)
-      for (const double down : crossings(length, rest() + kLeast, -1))
+    if (!inner.empty() && kMinimum + inner.front() < 0.9 * kMaximum)
+      for (const double down : crossings(length, rest() + kMinimum, -1))
         if (down > t + 1e-9 && down < next) next = down, change = fem::MeshChange::removal;
     if (next > 1 - 1e-9) return out;
     if (change == fem::MeshChange::insertion)
-      inner.insert(inner.begin(), 0.5 * kMost);
+      inner.insert(inner.begin(), 0.5 * kMaximum);
     else
       inner.erase(inner.begin());
     out.emplace_back(t = next, change);
@@ -163,7 +169,7 @@ TEST_F(MotionPlatform, ChangesOfTheMeshAreWhatTheLengthsDemandAndDoNoHarm) {
   Mechanism mechanism = build_mechanism(scene_);
   double kinetic = 0, largest_momentum = 0;
   const fem::MotionResult r = fem::integrate(
-      mechanism.model, mechanism.growths, mechanism.motion, [&](const fem::MotionStep& step) {
+      mechanism.model, mechanism.moving_roots, mechanism.motion, [&](const fem::MotionStep& step) {
         kinetic = std::max(kinetic, step.energies.kinetic);
         largest_momentum = std::max(largest_momentum, fem::momentum(step.model, step.x).norm());
       });
@@ -190,17 +196,17 @@ TEST_F(MotionPlatform, ChangesOfTheMeshAreWhatTheLengthsDemandAndDoNoHarm) {
     EXPECT_EQ(k, want.size()) << bar;
     EXPECT_GT(k, 8u);
   }
-  // Line of the energy balance; the drives' work is in it.
-  EXPECT_LT(r.energy_defect, 2e-4);
+  // The energy balance includes the work of the drives.
+  EXPECT_LT(r.energy_error, 2e-4);
   EXPECT_LT(r.constraint_drift, 1e-12);
 }
 
-/// Acceleration of the platform in the first moment.
+/// Returns the acceleration of the platform at the start.
 Vec2 first_acceleration(const std::string& start) {
   Mechanism mechanism = build_mechanism(read("motion_platform", {"time.start=" + start}));
   mechanism.motion.end = mechanism.motion.step;
   std::optional<Vec2> out;
-  fem::integrate(mechanism.model, mechanism.growths, mechanism.motion,
+  fem::integrate(mechanism.model, mechanism.moving_roots, mechanism.motion,
                  [&](const fem::MotionStep& step) {
                    if (!out)
                      out = fem::frame_of(step.model.body("platform"), step.x).origin_acceleration;
@@ -208,27 +214,29 @@ Vec2 first_acceleration(const std::string& start) {
   return *out;
 }
 
-// The path begins with θ'' = 6 π, so with 3 π m/s² upwards. Bars that are strained by the inertia
-// forces of the rigid motion push the platform along it; bars without strain do not, and ring.
+// The path begins with θ'' = 6 π, that is with an acceleration of 3 π m/s² upwards. Bars that are
+// prestretched by the inertia forces of the rigid motion give the platform this acceleration.
+// Unstrained bars do not, and vibrate.
 TEST_F(MotionPlatform, PrestretchedBarsCarryThePlatformFromTheFirstMoment) {
   const Vec2 rigid(0, 3 * kPi);
   EXPECT_LT((first_acceleration("prestretched") - rigid).norm(), 1e-3 * rigid.norm());
   EXPECT_GT((first_acceleration("rigid") - rigid).norm(), 0.1 * rigid.norm());
 }
 
-// Before the first change of a mesh the balance is of the order of the scheme.
+// Before the first change of a mesh the energy error is of second order, the order of the
+// integrator.
 TEST_F(MotionPlatform, EnergyBalanceIsOfSecondOrder) {
-  const auto defect = [](double h) {
+  const auto energy_error = [](double h) {
     Mechanism mechanism =
         build_mechanism(read("motion_platform", {"time.step=" + std::to_string(h)}));
     mechanism.motion.end = 0.1;
     double worst = 0;
     fem::integrate(
-        mechanism.model, mechanism.growths, mechanism.motion,
-        [&](const fem::MotionStep& step) { worst = std::max(worst, std::abs(step.defect)); });
+        mechanism.model, mechanism.moving_roots, mechanism.motion,
+        [&](const fem::MotionStep& step) { worst = std::max(worst, std::abs(step.energy_error)); });
     return worst;
   };
-  const testing::Rate rate = testing::fit_rate({4e-3, 2e-3, 1e-3}, defect);
+  const testing::Rate rate = testing::fit_rate({4e-3, 2e-3, 1e-3}, energy_error);
   EXPECT_NEAR(rate.order(), 2, 0.1) << rate.table();
 }
 

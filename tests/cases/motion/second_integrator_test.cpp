@@ -1,8 +1,10 @@
-// Shipped scenes, some on coarser meshes, by our integrator and by one of another family and other
-// hands (IDA of SUNDIALS): positions, velocities and multipliers at the end of intervals without
-// changes of a mesh. Each side says how far off it may be: IDA by what ten times its tolerance
-// changes, generalized_alpha by what extrapolation from steps h, h / 2 changes when it is made from
-// h / 2, h / 4 instead. The difference is below the sum, and the sum is small.
+// Shows that shipped scenes, some on coarser meshes, have the same solution with this program's
+// integrator and with IDA of SUNDIALS, an independent integrator of another family: positions,
+// velocities and multipliers at the end of intervals without changes of a mesh. Each integrator has
+// an error estimate: for IDA the change caused by ten times its tolerance, for generalized_alpha
+// the change of the extrapolated value if it is made from steps h / 2, h / 4 instead of h, h / 2.
+// The difference must be below the sum of both estimates (that of IDA times 3), and this sum must
+// be small.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,24 +19,24 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Where an interval begins. Jumps (of the mesh, of the crank's velocity) set off vibrations that
-/// no step of interest follows, and extrapolation only knows errors it can follow: ten steps with
-/// rho_inf 0 damp them first.
+/// The start of an interval. Jumps of the mesh or of the crank's velocity excite vibrations that no
+/// reasonable step resolves, and extrapolation estimates only errors of resolved motions. Therefore
+/// ten steps with rho_inf = 0 damp these vibrations first.
 enum class From { start, after_start, after_first_change };
 
 struct Interval {
   std::string scene;
-  Changes changes;   // of the scene
+  Changes changes;   // changes of the scene
   double longest;    // [s]
-  int steps;         // of generalized_alpha, the coarsest
-  double tolerance;  // of IDA, the finer
+  int steps;         // number of steps of generalized_alpha, coarsest level
+  double tolerance;  // finer tolerance of IDA
   From from = From::start;
 };
 
-/// When the mesh of any body next changes after t; infinite if never.
+/// Returns the time of the next change of the mesh of any body after t; infinity if there is none.
 double next_change(const Mechanism& m, double t) {
   double out = std::numeric_limits<double>::infinity();
-  for (const fem::Growth& g : m.growths)
+  for (const fem::MovingRoot& g : m.moving_roots)
     out =
         std::min(out, fem::next_change(m.model.body(g.body), g, t, m.motion.end, m.motion.step).t);
   return out;
@@ -44,12 +46,12 @@ fem::State begin(Mechanism& m, From from) {
   fem::MotionSettings s = m.motion;
   fem::State x;
   if (from == From::start) {
-    x = fem::start_state(m.model, m.growths, 0, s.start, s.placement);
+    x = fem::start_state(m.model, m.moving_roots, 0, s.start, s.body_poses);
   } else {
     m.model.prepare(0);
     s.alpha.rho_inf = 0;
     s.end = (from == From::after_first_change ? next_change(m, 0) : 0) + 10 * s.step;
-    x = fem::integrate(m.model, m.growths, s, [](const fem::MotionStep&) {}).final;
+    x = fem::integrate(m.model, m.moving_roots, s, [](const fem::MotionStep&) {}).final;
   }
   const auto scheme = fem::make_integrator(m.model, {s.integrator, s.alpha, {}, {}});
   scheme->project_velocity(x);
@@ -57,7 +59,7 @@ fem::State begin(Mechanism& m, From from) {
   return x;
 }
 
-/// Unknowns as displacements [m] and [m/s], multipliers as they are.
+/// Unknowns scaled to displacements [m] and velocities [m/s], and unscaled multipliers.
 struct End {
   VectorXd q, v, lambda;
   End operator-(const End& o) const { return {q - o.q, v - o.v, lambda - o.lambda}; }
@@ -73,12 +75,13 @@ End extrapolated(const End& coarse, const End& fine) {
           (4 * fine.lambda - coarse.lambda) / 3};
 }
 
-/// What both say at the end of an interval, and what each leaves open.
+/// The common values at the end of an interval, the difference of both integrators, and their error
+/// estimates.
 struct Verdict {
   End end, difference, ida, alpha;
 };
 
-Verdict judge(const Interval& interval) {
+Verdict verify(const Interval& interval) {
   Mechanism m = build_mechanism(read(interval.scene, interval.changes));
   const fem::State start = begin(m, interval.from);
   m.model.prepare(start.t);
@@ -126,10 +129,11 @@ Verdict judge(const Interval& interval) {
   return out;
 }
 
-/// The difference is explained, and what explains it is small against the motion. An estimate from
-/// two levels is multiplied by 3 (Roache 1994, J. Fluids Eng. 116, 405-413): here that of IDA,
-/// whose velocities on the platform are only twice as good at a tenth of the tolerance, so that two
-/// runs differ by about their error, more or less as the last bits have it.
+/// Expects that the error estimates explain the difference and are small compared with the motion.
+/// An estimate from two levels is multiplied by 3 (Roache 1994, J. Fluids Eng. 116, 405-413). Here
+/// this is the estimate of IDA: its velocities of the platform improve only by a factor of two with
+/// a tenth of the tolerance, so that the difference of two runs is about as large as their error,
+/// slightly more or less depending on round-off.
 void expect_agreement(const Verdict& v, double multipliers) {
   const auto expect = [](const char* what, const VectorXd& end, const VectorXd& difference,
                          const VectorXd& ida, const VectorXd& alpha, double part) {
@@ -144,47 +148,49 @@ void expect_agreement(const Verdict& v, double multipliers) {
 }
 
 TEST(SecondIntegrator, PlatePendulum) {
-  expect_agreement(judge({"plate_pendulum", {"body.elements=[2, 2]"}, 0.2, 1000, 1e-9}), 1e-6);
+  expect_agreement(verify({"plate_pendulum", {"body.elements=[2, 2]"}, 0.2, 1000, 1e-9}), 1e-6);
 }
 
-/// From the start to the first change at 0.05 s, and from there on.
+/// Changes that give a coarse plate. One test covers the time from the start to the first change of
+/// the mesh at 0.05 s, another the time after it.
 Changes coarse_plate(const std::string& max_length) {
   return {"body.elements=[4, 1]", "body.flow.max_length=" + max_length};
 }
 TEST(SecondIntegrator, RotatingPlateSlow) {
-  expect_agreement(judge({"rotating_plate_v01", coarse_plate("0.13"), 0.05, 1000, 1e-8}), 1e-3);
+  expect_agreement(verify({"rotating_plate_v01", coarse_plate("0.13"), 0.05, 1000, 1e-8}), 1e-3);
 }
 TEST(SecondIntegrator, RotatingPlateSlowAfterInsertion) {
-  expect_agreement(judge({"rotating_plate_v01", coarse_plate("0.13"), 0.05, 1500, 1e-8,
-                          From::after_first_change}),
+  expect_agreement(verify({"rotating_plate_v01", coarse_plate("0.13"), 0.05, 1500, 1e-8,
+                           From::after_first_change}),
                    1e-3);
 }
 TEST(SecondIntegrator, RotatingPlateFast) {
-  expect_agreement(judge({"rotating_plate_v05", coarse_plate("0.15"), 0.05, 1500, 1e-8}), 1e-3);
+  expect_agreement(verify({"rotating_plate_v05", coarse_plate("0.15"), 0.05, 1500, 1e-8}), 1e-3);
 }
 TEST(SecondIntegrator, RotatingPlateFastBetweenInsertions) {
-  expect_agreement(
-      judge({"rotating_plate_v05", coarse_plate("0.15"), 0.2, 600, 1e-8, From::after_first_change}),
-      1e-3);
+  expect_agreement(verify({"rotating_plate_v05", coarse_plate("0.15"), 0.2, 600, 1e-8,
+                           From::after_first_change}),
+                   1e-3);
 }
 
-// Pose of the platform, forces of joints and drives, bars: all are among the unknowns.
+// The unknowns contain the pose of the platform, the forces of joints and drives, and the bars.
 const Changes kCoarseBars = {"body.bar1.elements=[2, 1]", "body.bar1.flow.max_length=0.32",
                              "body.bar2.elements=[3, 1]", "body.bar2.flow.max_length=0.32"};
 TEST(SecondIntegrator, MotionPlatform) {
-  expect_agreement(judge({"motion_platform", kCoarseBars, 0.01, 300, 1e-8}), 1e-3);
+  expect_agreement(verify({"motion_platform", kCoarseBars, 0.01, 300, 1e-8}), 1e-3);
 }
 TEST(SecondIntegrator, MotionPlatformAfterInsertion) {
   expect_agreement(
-      judge({"motion_platform", kCoarseBars, 0.01, 300, 1e-8, From::after_first_change}), 1e-3);
+      verify({"motion_platform", kCoarseBars, 0.01, 300, 1e-8, From::after_first_change}), 1e-3);
 }
 
-// All of the rise of temperature, with a little before and after; without a jump of its second
-// rate, which is one of the accelerations.
+// The interval contains the whole rise of the temperature and a little time before and after it.
+// The quintic profile has no jump of the second derivative, which would be a jump of accelerations.
 TEST(SecondIntegrator, HeatedSliderCrank) {
-  const Changes quick = {"body.heat.start=0.015", "body.heat.settle=0.08",
+  const Changes quick = {"body.heat.start=0.015", "body.heat.duration=0.08",
                          "body.heat.profile=quintic"};
-  expect_agreement(judge({"slider_crank_heated", quick, 0.1, 1000, 1e-8, From::after_start}), 1e-3);
+  expect_agreement(verify({"slider_crank_heated", quick, 0.1, 1000, 1e-8, From::after_start}),
+                   1e-3);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Plates whose material slides freely through a joint on a rigid body.
+// Shows that the material of a plate slides freely through a joint on a rigid body.
 
 #include <gtest/gtest.h>
 
@@ -54,21 +54,21 @@ body = "strip"
 at = "free_end"
 )toml";
 
-// A strip hangs out of a frictionless bearing that is held upright: it falls freely, unstrained,
-// and new elements leave the bearing.
+// A strip hangs out of a frictionless bearing that is held upright. It falls freely without strain,
+// as ½ g t² says, and new elements leave the bearing.
 TEST(FreeSlide, FallsOutOfARigidBody) {
   const Scratch scratch;
   const Scene scene = read_scene(io::CaseFile(scratch.write("falling.toml", kFalling)));
   Mechanism mechanism = build_mechanism(scene);
   const fem::MotionResult r = fem::integrate(
-      mechanism.model, mechanism.growths, mechanism.motion, [&](const fem::MotionStep& step) {
+      mechanism.model, mechanism.moving_roots, mechanism.motion, [&](const fem::MotionStep& step) {
         const double t = step.x.t, fallen = 0.5 * 9.81 * t * t;
         const Vec3 tip = fem::point_position(step.model.body("strip"), step.x, {0.4, 0});
         EXPECT_NEAR(tip.x(), 0, 1e-11);
         EXPECT_NEAR(tip.y(), -0.45 - fallen, 1e-10) << t;
         EXPECT_LT(step.energies.strain, 1e-12);
       });
-  EXPECT_EQ(r.events.size(), 3u);  // at 0.04, 0.1 and 0.16 m more
+  EXPECT_EQ(r.events.size(), 3u);  // after 0.04, 0.1 and 0.16 m of fall
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Bolts and pins in the bores of a plate at rest: which nodes are held and loaded, what their
-// forces come to, and cells against outlines.
+// Shows that bolts and pins in the bores of a static plate hold and load the right nodes, that
+// nodal forces have the given resultants and moments, and that results on cells and on outlines
+// agree.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@
 namespace flexmorph::test {
 namespace {
 
-// A plate of 80 mm x 50 mm with bores of 5 mm and 8 mm radius, all of it material.
+// A plate of 80 mm x 50 mm, full of material, with bores of 5 mm and 8 mm radius.
 const std::string kHead = R"(
 [domain]
 name = "plate"
@@ -65,7 +66,7 @@ struct Bores : ::testing::Test {
   Bores() {
     scratch.write("all.csv", "X0,Y0,half_length,angle,c1,c2,c3\n0.04,0.025,0.2,0,0.1,0.1,0.1\n");
   }
-  /// The case with a line in the place of another one.
+  /// Writes the case with one line replaced. @returns the path of its file
   std::string with(const std::string& old, const std::string& line) const {
     std::string text = kHead;
     text.replace(text.find(old), old.size(), line);
@@ -78,15 +79,16 @@ TEST_F(Bores, AreHeldAndLoadedAtTheirRims) {
   const mmc::BodyProblem problem = cases::build_problems(scene).front();
   const Grid& grid = problem.grid;
   const cases::StaticConditions found = cases::static_conditions(scene, grid, problem.outside);
-  const auto place = [&](int node) {
+  const auto location = [&](int node) {
     return grid.node_position(node / (grid.ny + 1), node % (grid.ny + 1));
   };
   const Vec2 bolt(0.02, 0.025), pin(0.05, 0.025), disc(0.07, 0.01);
-  // Two unknowns for each node; the rim has about as many nodes as its box has sides of cells.
+  // There are two unknowns per node. The number of nodes on the rim lies between the bounds 28 and
+  // 44 for a circle of radius 5 cells.
   EXPECT_GE(found.held.size(), 2 * 28u);
   EXPECT_LE(found.held.size(), 2 * 44u);
   for (const fem::HeldUnknown& held : found.held)
-    EXPECT_NEAR((place(held.node) - bolt).norm(), 0.005, 0.001);
+    EXPECT_NEAR((location(held.node) - bolt).norm(), 0.005, 0.001);
   ASSERT_EQ(found.loads.size(), 3u);
   const auto resultant = [&](const mmc::LoadCase& load) {
     Vec2 sum = Vec2::Zero();
@@ -96,7 +98,7 @@ TEST_F(Bores, AreHeldAndLoadedAtTheirRims) {
   const auto moment = [&](const mmc::LoadCase& load) {
     double sum = 0;
     for (const fem::NodalForce& f : load.forces) {
-      const Vec2 arm = place(f.node) - pin;
+      const Vec2 arm = location(f.node) - pin;
       sum += arm.x() * f.force.y() - arm.y() * f.force.x();
     }
     return sum;
@@ -108,24 +110,25 @@ TEST_F(Bores, AreHeldAndLoadedAtTheirRims) {
   for (const size_t l : {0u, 1u})
     for (const fem::NodalForce& f : found.loads[l].forces)
       if (f.force.norm() > 0) {
-        EXPECT_NEAR((place(f.node) - pin).norm(), 0.008, 0.001);
+        EXPECT_NEAR((location(f.node) - pin).norm(), 0.008, 0.001);
       }
-  // The pin does not pull: its forces go outwards, and where it is there are none behind.
+  // A pin does not pull: its forces point outwards, and there are none on the side behind it.
   for (const fem::NodalForce& f : found.loads[0].forces)
-    EXPECT_GE(f.force.dot(place(f.node) - pin), -1e-12);
-  // A disc in the material: all nodes within a radius of 4.1 cells about a node, 49 of them.
+    EXPECT_GE(f.force.dot(location(f.node) - pin), -1e-12);
+  // A disc in the material loads all nodes within 4.1 cells of its centre, which is a node: 49
+  // nodes.
   EXPECT_NEAR((resultant(found.loads[2]) - Vec2(0, -100)).norm(), 0, 1e-9);
   int within = 0;
   for (int i = -5; i <= 5; ++i)
     for (int j = -5; j <= 5; ++j) within += i * i + j * j <= 4.1 * 4.1;
   EXPECT_EQ(found.loads[2].forces.size(), static_cast<size_t>(within));
   for (const fem::NodalForce& f : found.loads[2].forces)
-    EXPECT_LE((place(f.node) - disc).norm(), 0.0041);
+    EXPECT_LE((location(f.node) - disc).norm(), 0.0041);
 }
 
-// Rims of cells are stairs, those of outlines are round: two discretizations of the same loads that
-// meet as cells shrink. Nodes of a stair lie outside of the circle by up to a cell, so that the
-// difference is about proportional to the cell (measured: 0.44 to 0.47 of it with half the cell).
+// Rims are stairs of cells in one discretization and round in the other; both converge to one
+// solution. Nodes of a stair lie up to one cell outside of the circle, therefore the difference is
+// about proportional to the cell (measured: half the cell gives 0.44 to 0.47 of the difference).
 TEST_F(Bores, HaveTheSameEnergiesOnCellsAndOnOutlines) {
   std::vector<double> last;
   for (const char* cell : {"0.001", "0.0005"}) {
@@ -155,18 +158,18 @@ TEST_F(Bores, RefuseWhatTheyCannotCarry) {
     return ended.err;
   };
   const std::string force = "force = [300.0, -400.0]\n";
-  EXPECT_TRUE(contains(refused(force, "moment = 1.0\n"), "a pin presses with a `force` [N]"));
+  EXPECT_TRUE(contains(refused(force, "moment = 1.0\n"), "a bearing load needs a `force` [N]"));
   EXPECT_TRUE(contains(refused("moment = 12.0", "moment = 0.0"),
-                       "a [[load.force]] has a `force` [N] or a `moment` [N m]"));
+                       "a [[load.force]] needs a `force` [N] or a `moment` [N m]"));
   EXPECT_TRUE(contains(refused("disc = [0.05, 0.025, 0.008]\nforce", "edge = \"right\"\nforce"),
-                       "a pin bears on the rim of a `disc`"));
+                       "a bearing load needs a `disc`"));
   EXPECT_TRUE(contains(refused("disc = [0.0501, 0.0249, 0.0081]", "point = [0.05, 0.01]"),
-                       "a point has no lever"));
+                       "not on a point"));
   EXPECT_TRUE(
       contains(refused("disc = [0.05, 0.025, 0.008]\nforce", "disc = [0.05, 0.025, 0.012]\nforce"),
-               "a pin wants a bore"));
+               "a pin needs a bore"));
   EXPECT_TRUE(contains(refused("disc = [0.07, 0.01, 0.0041]", "disc = [0.07, 0.01, 0.0]"),
-                       "a radius is positive"));
+                       "a positive radius"));
   EXPECT_TRUE(contains(refused("disc = [0.07, 0.01, 0.0041]", "disc = [0.02, 0.025, 0.003]"),
                        "no material can be there"));
   EXPECT_TRUE(

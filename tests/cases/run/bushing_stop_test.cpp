@@ -1,6 +1,6 @@
-// Bushings and stops of case files: a body on a bushing against three damped oscillators, a ball
-// against a stop and its rebound in closed form, a rope and an angle that ends, and what is
-// refused.
+// Shows that bushings and stops of case files follow closed forms: a body on a bushing is three
+// damped oscillators, a ball rebounds from a stop, a rope and an angle stop turn a motion back; and
+// that wrong input is refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ io::CsvTable motion_of(const Scratch& scratch, const std::string& text) {
   return io::read_csv(folder + "/motion.csv");
 }
 
-/// A body of 2 kg and 0.3 kg m^2 on the ground.
+/// Returns a case with a body of 2 kg and 0.3 kg m^2 attached to the ground.
 std::string body(const std::string& words, double step, double end, const std::string& more) {
   return R"toml(
 title = "A body and the ground"
@@ -30,14 +30,15 @@ step = )toml" +
          "\n[[rigid_body]]\nname = \"ball\"\nmass = 2.0\ninertia = 0.3\n" + words + more;
 }
 
-/// x of x'' + 2 ζ ω x' + ω² x = 0 that starts at rest at 1.
+/// Returns x(t) of x'' + 2 ζ ω x' + ω² x = 0 with x(0) = 1, x'(0) = 0.
 double swing(double mass, double stiffness, double damping, double t) {
   const double w = std::sqrt(stiffness / mass), z = damping / (2 * mass * w),
                wd = w * std::sqrt(1 - z * z);
   return std::exp(-z * w * t) * (std::cos(wd * t) + z * w / wd * std::sin(wd * t));
 }
 
-// The axis of a stands at 0.4 rad: along it, across it and about it there are three oscillators.
+// The axis of a has the angle 0.4 rad. Along this axis, across it and about it there are three
+// independent oscillators.
 TEST(Bushing, HoldsABodyAsThreeOscillators) {
   const Scratch scratch;
   const double c = std::cos(0.4), s = std::sin(0.4);
@@ -59,7 +60,8 @@ rest_angle = 0.1
 )toml"));
   const auto t = motion.numbers("time"), x = motion.numbers("ball.x"), y = motion.numbers("ball.y"),
              angle = motion.numbers("ball.angle");
-  // Order 2: (ω h)² / 12 of the phase ω t, twice as much with numerical damping's margin.
+  // The integrator is of order 2: the error of the phase ω t is (ω h)² / 12, and the numerical
+  // damping doubles it.
   for (size_t i = 0; i < t.size(); ++i) {
     EXPECT_NEAR(c * x[i] + s * y[i], (c * 0.3 - s * 0.1) * swing(2, 50, 3, t[i]), 2e-4) << t[i];
     EXPECT_NEAR(c * y[i] - s * x[i], (-c * 0.1 - s * 0.3) * swing(2, 400, 0, t[i]), 5e-4) << t[i];
@@ -67,7 +69,7 @@ rest_angle = 0.1
   }
 }
 
-/// A ball that flies with 1.5 m/s to a stop that begins 0.1 m ahead.
+/// Returns a ball that flies with 1.5 m/s to a stop 0.1 m ahead.
 std::string thrown(const std::string& stop) {
   return body("velocity = [1.5, 0.2]\nangular_velocity = 0.0\n", 2e-4, 0.3, R"toml(
 [[spring]]
@@ -88,11 +90,11 @@ double last_rate(const std::vector<double>& t, const std::vector<double>& x) {
 struct Rebound {
   const char* name;
   const char* stop;
-  double speed;  // over that of the impact
+  double speed;  // rebound speed divided by the impact speed
 };
 
-// k δ + c δ' = 0 ends the contact: with ζ = c/(2 m ω), tan(ω_d t) = -2 ζ sqrt(1 - ζ²)/(1 - 2 ζ²),
-// and what is left of the speed is exp(-ζ ω t).
+// The contact ends when k δ + c δ' = 0. With ζ = c/(2 m ω): tan(ω_d t) = -2 ζ sqrt(1 - ζ²)/(1 - 2
+// ζ²), and the speed is multiplied by exp(-ζ ω t).
 double damped_rebound(double zeta) {
   const double root = std::sqrt(1 - zeta * zeta);
   const double phase = std::numbers::pi - std::atan(2 * zeta * root / (1 - 2 * zeta * zeta));
@@ -101,15 +103,15 @@ double damped_rebound(double zeta) {
 
 class EveryRebound : public ::testing::TestWithParam<Rebound> {};
 
-// ω = sqrt(8000/2) = 63.2/s; c = 50.6 N s/m is ζ = 0.2. The step sees the impact up to h ω = 1.3 %
-// of its force: its share of the energy is (h ω)².
+// ω = sqrt(8000/2) = 63.2/s; c = 50.6 N s/m is ζ = 0.2. The time step resolves the beginning of the
+// contact up to h ω = 1.3 % of its force, which is the fraction (h ω)² of the energy.
 TEST_P(EveryRebound, IsWhatTheContactLeaves) {
   const Scratch scratch;
   const io::CsvTable motion = motion_of(scratch, thrown(GetParam().stop));
   const auto t = motion.numbers("time"), x = motion.numbers("ball.x"), y = motion.numbers("ball.y");
   EXPECT_NEAR(last_rate(t, x), -1.5 * GetParam().speed, 1.5 * 4e-3);
-  EXPECT_NEAR(y.back(), 0.2 * t.back(), 1e-9);  // no friction
-  // Energy 1/2 m v² = 1/2 k δ² where nothing damps and the onset is short.
+  EXPECT_NEAR(y.back(), 0.2 * t.back(), 1e-9);  // there is no friction
+  // Without damping and with a short onset, 1/2 m v² = 1/2 k δ² gives the largest depth δ.
   const double deepest = *std::max_element(x.begin(), x.end()) - 0.1;
   if (GetParam().speed == 1) {
     EXPECT_NEAR(deepest, 1.5 / std::sqrt(4000), 3e-4);
@@ -122,8 +124,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Rebound{"damped", "damping = 50.59644256269407", damped_rebound(0.2)}),
     [](const auto& c) { return c.param.name; });
 
-// A rope of 0.25 m: the ball leaves the other way with the same speed. An axle that ends at 0.5
-// rad turns back with the same rate.
+// A rope of 0.25 m: the ball leaves in the opposite direction with equal speed. An axle with a stop
+// at 0.5 rad turns back with equal rate.
 TEST(Stop, RopesAndAnglesTurnBack) {
   const Scratch scratch;
   const io::CsvTable rope = motion_of(
@@ -152,17 +154,17 @@ stiffness = 3000.0
 TEST(Stop, IsRefusedWhereItMakesNoSense) {
   const Scratch scratch;
   const std::string file = scratch.write("case.toml", thrown(""));
-  const auto says = [&](const std::string& change, const std::string& words) {
+  const auto mentions = [&](const std::string& change, const std::string& words) {
     const Ended ended = flexmorph(scratch, {"check", file, "--set", change});
     EXPECT_EQ(ended.code, 2) << change;
     EXPECT_TRUE(contains(ended.err, words)) << ended.err;
   };
-  says("spring.wall.least=0.2", "`least` lies below `most`");
-  says("spring.wall.stiffness=0", "a stiffness");
-  says("spring.wall.damping=-1", "a damping");
-  says("spring.wall.onset=-1", "a width");
-  says("spring.wall.free_length=1", "free_length");
-  says("spring.wall.b=ground", "a body is missing");
+  mentions("spring.wall.least=0.2", "greater than the lower limit `least`");
+  mentions("spring.wall.stiffness=0", "a stiffness");
+  mentions("spring.wall.damping=-1", "a damping");
+  mentions("spring.wall.onset=-1", "a width");
+  mentions("spring.wall.free_length=1", "free_length");
+  mentions("spring.wall.b=ground", "are both the ground");
   const std::string bushing = scratch.write(
       "bushing.toml",
       body("", 1e-3, 1, "[[spring]]\ntype = \"bushing\"\nname = \"m\"\nb = \"ball\""));
@@ -171,7 +173,7 @@ TEST(Stop, IsRefusedWhereItMakesNoSense) {
     EXPECT_EQ(ended.code, 2) << change;
     EXPECT_TRUE(contains(ended.err, words)) << ended.err;
   };
-  bad("title=x", "a bushing has a `stiffness`, a `damping`, or one in torsion");
+  bad("title=x", "`torsion_stiffness` or `torsion_damping`");
   bad("spring.m.stiffness=[1]", "2");
   bad("spring.m.stiffness=[1, -1]", "a stiffness");
   bad("spring.m.torsion_damping=-1", "a damping");

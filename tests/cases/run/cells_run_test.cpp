@@ -1,4 +1,5 @@
-// Runs whose designs are judged by motions on their cells, and what others say instead.
+// Shows that designs are verified by the motion on their cells where the case asks for it, and that
+// runs without such a motion report the difference of energies instead.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ double largest(const std::vector<double>& values) {
   return out;
 }
 
-/// Trapezoids, as any reader of the table would.
+/// Integrates the column by the trapezoidal rule.
 double strain_integral(const io::CsvTable& motion) {
   const auto t = motion.numbers("time"), u = motion.numbers("energy.strain");
   double out = 0;
@@ -27,8 +28,8 @@ double strain_integral(const io::CsvTable& motion) {
   return out;
 }
 
-// Two plates, three cycles: integral, best cycle, amplitudes and expectations are those of the
-// motion on cells, while the scene's mesh has others.
+// Two plates, three cycles: the integral, the best cycle, amplitudes and expectations are those of
+// the motion on cells, and differ from those on the mesh of the scene.
 TEST(CellsRun, CyclesAndDesignsAreJudgedOnCells) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
@@ -53,7 +54,7 @@ TEST(CellsRun, CyclesAndDesignsAreJudgedOnCells) {
   }
   EXPECT_EQ(best, 1);
   const json& motion = run["motion"];
-  EXPECT_EQ(motion["judged_on"], "the cells of the designs");
+  EXPECT_EQ(motion["verified_on"], "the cells of the designs");
   EXPECT_NEAR(motion["strain_energy_integral"].get<double>(), integral, 1e-12 * integral);
   EXPECT_NEAR(motion["scene_mesh_strain_energy_integral"].get<double>(), strain_integral(coarse),
               1e-12 * integral);
@@ -67,14 +68,15 @@ TEST(CellsRun, CyclesAndDesignsAreJudgedOnCells) {
   EXPECT_EQ(run["expect"]["amplitude"]["found"].get<double>(), amplitude);
   EXPECT_EQ(run["expect"]["energy.strain.largest"]["found"].get<double>(),
             largest(on_cells.numbers("energy.strain")));
-  EXPECT_FALSE(std::filesystem::exists(folder + "/motion_judged.csv"));
-  EXPECT_NE(contents_of(folder + "/report.html").find("Judged by the motion on the cells"),
-            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder + "/motion_on_cells.csv"));
+  EXPECT_NE(
+      contents_of(folder + "/report.html").find("Tip deflection of the verification on the cells"),
+      std::string::npos);
 }
 
-/// The full plate, cut through by a gap.
+/// Evaluates the full plate, cut through by a gap. @param said  receives the output of the program
 json analysed(const Scratch& scratch, double gap, std::string& said) {
-  const double half = 0.5 * (0.56 - gap) / 2;  // of the length of a bar
+  const double half = 0.5 * (0.56 - gap) / 2;  // half the length of a bar
   std::vector<Component> bars;
   for (const double centre : {half, 0.56 - half})
     for (const double y : {-0.025, 0.025})
@@ -88,24 +90,26 @@ json analysed(const Scratch& scratch, double gap, std::string& said) {
   return run_json(folder);
 }
 
-// Where no motion on cells judges, energies tell of a cut: the 50 mm elements of the short plate
-// bridge a gap of two cells.
+// If no motion on cells verifies the design, a difference of energies indicates a cut: the 50 mm
+// elements of the short plate bridge a gap of two cells.
 TEST(CellsRun, EnergiesThatAreApartAreAWarning) {
   for (const double gap : {0.0, 0.01}) {
     const Scratch scratch;
     std::string said;
     const json run = analysed(scratch, gap, said);
     const double apart = run["results"][0]["load_difference"]["geometric"];
-    const bool warned = said.find("bridge what is cut") != std::string::npos;
-    EXPECT_EQ(warned, run["warnings"].dump().find("bridge what is cut") != std::string::npos);
+    const bool warned = said.find("static strain energy of body") != std::string::npos;
+    EXPECT_EQ(warned,
+              run["warnings"].dump().find("static strain energy of body") != std::string::npos);
     EXPECT_EQ(warned, gap > 0) << apart << said;
     if (gap > 0) {
       EXPECT_GT(apart, 1);
     } else {
-      // The energy of the full plate in elements of 50 mm is 5 % off that of its cells.
+      // The energy of the full plate on elements of 50 mm differs by 5 % from the energy on its
+      // cells.
       EXPECT_LT(apart, 0.1);
     }
-    // A design that was not made for any loads has those of its own motion.
+    // A design that was not optimized for any loads is assessed by the loads of its own motion.
     EXPECT_NEAR(run["results"][0]["load_difference"]["loads"].get<double>(), 0, 1e-9);
   }
 }

@@ -1,6 +1,6 @@
-// Loaded into the program before it starts (LD_PRELOAD): the program, which asks for no language,
-// speaks that of its environment, in C and in C++, as it would inside of a host that has asked.
-// Every process says in the file FLEXMORPH_SPEAKS how it prints and reads numbers.
+// Shared library that is loaded before the program starts (LD_PRELOAD). It sets the locale of the
+// environment for C and C++, which the program itself does not do, as a host application might.
+// Every process writes to the file FLEXMORPH_SPEAKS how it prints and reads numbers.
 #include <cstdio>
 #include <cstdlib>
 #include <locale>

@@ -1,5 +1,5 @@
-// The program as a user meets it: its commands, its exit codes, and its one-line complaints about
-// bad input, which leave no folder behind.
+// Shows the behaviour of the commands of the program: their outputs, exit codes, and one-line
+// messages about bad input, after which no run folder exists.
 
 #include <gtest/gtest.h>
 
@@ -29,11 +29,11 @@ TEST(CommandLine, SaysWhatWasProbablyMeant) {
     std::string answer;
   };
   for (const Meant& each : std::vector<Meant>{
-           {{"chek", "short_beam"}, "'chek' is no command, did you mean 'check'?"},
-           {{"short_beam"}, "'short_beam' is a case: flexmorph run short_beam"},
-           {{"run", "shortbeam"}, "not a shipped case, did you mean 'short_beam'?"},
-           {{"run", "four-bar.toml"}, "not a shipped case, did you mean 'four_bar'?"},
-           {{"check", "."}, ".: a directory; a case is one TOML file"},
+           {{"chek", "short_beam"}, "'chek' is not a command, did you mean 'check'?"},
+           {{"short_beam"}, "'short_beam' is a case, not a command; use: flexmorph run short_beam"},
+           {{"run", "shortbeam"}, "nor a shipped case, did you mean 'short_beam'?"},
+           {{"run", "four-bar.toml"}, "nor a shipped case, did you mean 'four_bar'?"},
+           {{"check", "."}, ".: this is a directory; a case is one TOML file"},
            {{"keys", "boddy"}, "did you mean 'body'?"}}) {
     const Ended ended = flexmorph(scratch, each.words);
     EXPECT_EQ(ended.code, 2) << each.words[0];
@@ -45,7 +45,7 @@ TEST(CommandLine, SaysWhatWasProbablyMeant) {
   EXPECT_TRUE(contains(help.out, "runs a case and writes its run folder")) << help.out;
 }
 
-// A case may come through a pipe; and what nobody can write is no success.
+// A case may be read from a pipe. If the output cannot be written, the exit code is 2.
 TEST(CommandLine, ReadsStandardInputAndMissesAFullDisk) {
   const Scratch scratch;
   const std::string out = scratch / "checked", program = std::string("'") + FLEXMORPH_PROGRAM +
@@ -58,7 +58,8 @@ TEST(CommandLine, ReadsStandardInputAndMissesAFullDisk) {
   EXPECT_TRUE(contains(contents_of(err), "the output cannot be written")) << contents_of(err);
 }
 
-// Files of components are found beside the case that names them, those of --set where one is.
+// Files of components are found next to the case that names them; files named by --set are found in
+// the current folder.
 TEST(CommandLine, FindsFilesBesideTheCase) {
   const Scratch scratch;
   scratch.write("start.csv", "X0,Y0,half_length,angle,c1,c2,c3\n0.3,0.5,0.2,0,0.2,0.2,0.2\n");
@@ -110,7 +111,7 @@ TEST(CommandLine, CheckSaysWhatIsThereAndWhatIsNot) {
   for (const char* part : {"gravity", "heat", "out-of-plane", "rigid bodies", "verification",
                            "free material lines", "adaptive steps", "observed points", "loads"})
     EXPECT_TRUE(contains(absent, part));
-  // What is listed moves from one half to the other.
+  // Changes of the case move entries from one list to the other.
   const auto [more, less] = halves({"gravity=[0, -9.81]", "verify.mesh=[20, 4]",
                                     "time.step=\"adaptive\"", "output.plots=false"});
   EXPECT_FALSE(contains(less, "adaptive steps"));
@@ -130,12 +131,12 @@ TEST(CommandLine, UnknownWordsAreBadInput) {
   EXPECT_EQ(flexmorph(scratch, {"check", "rotating_plate_v01", "--set", "nothing"}).code, 2);
 }
 
-/// A line of short_plate.toml that cannot be used, and what the complaint names.
+/// A line of short_plate.toml with an invalid value, and the key and value that the message names.
 struct Bad {
   const char* name;
-  std::string line;   ///< the start of the line ...
-  std::string by;     ///< ... and what stands there instead
-  std::string where;  ///< key and value as the message shows them
+  std::string line;   ///< Start of the line to replace.
+  std::string by;     ///< The replacement.
+  std::string where;  ///< Key and value as the message shows them.
 };
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 
@@ -169,7 +170,7 @@ TEST_P(BadInput, IsOneLocatedLineAndNoFolder) {
   }
   ASSERT_GT(found, 0);
   const std::string file = scratch.write("bad.toml", text), folder = scratch / "out";
-  const size_t column = GetParam().by.find("= ") + 3;  // of the value, from 1
+  const size_t column = GetParam().by.find("= ") + 3;  // column of the value, counted from 1
   for (const Words& command : {Words{"run", file, "-o", folder}, Words{"check", file}}) {
     const Ended ended = flexmorph(scratch, command);
     EXPECT_EQ(ended.code, 2);
@@ -187,7 +188,7 @@ TEST(BadInput, AMissingFileIsNamed) {
   const Ended ended = flexmorph(scratch, {"run", file, "-o", folder});
   EXPECT_EQ(ended.code, 2);
   EXPECT_TRUE(contains(ended.err, file));
-  EXPECT_TRUE(contains(ended.err, "rotating_plate_v01"));  // what there is
+  EXPECT_TRUE(contains(ended.err, "rotating_plate_v01"));  // the existing cases
   EXPECT_EQ(lines_of(ended.err).size(), 1u);
   EXPECT_FALSE(fs::exists(folder));
 }
@@ -199,7 +200,7 @@ TEST(BadInput, OptionsOfTheCommandLineAreNamedToo) {
                                           "optimizer.options.asinit=0.1"});
   EXPECT_EQ(ended.code, 2);
   EXPECT_TRUE(starts(ended.err, "flexmorph: --set optimizer.options.asinit=0.1: "));
-  EXPECT_TRUE(contains(ended.err, "asyinit"));  // what there is
+  EXPECT_TRUE(contains(ended.err, "asyinit"));  // the existing options
   EXPECT_EQ(lines_of(ended.err).size(), 1u);
   EXPECT_FALSE(fs::exists(folder));
 }
@@ -216,7 +217,7 @@ TEST(BadInput, AFolderThatCannotBeMadeIsNamed) {
   EXPECT_TRUE(fs::is_regular_file(scratch / "file"));
 }
 
-// Nothing is ever taken away from a folder that no run has written.
+// Nothing is removed from a folder that no run has written.
 TEST(BadInput, AFolderOfSomethingElseIsLeftAlone) {
   const Scratch scratch;
   const std::string folder = scratch / "mine";

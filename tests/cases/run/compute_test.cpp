@@ -56,12 +56,12 @@ TEST(Compute, HasTheDesignOfARun) {
   ASSERT_EQ(result.design.outcomes.size(), 1u);
   const mmc::BodyOutcome& found = result.design.outcomes[0];
   EXPECT_EQ(run["results"][0]["compliance"].get<double>(), found.compliance);
-  EXPECT_EQ(run["results"][0]["sharp_compliance"].get<double>(), found.sharp.compliance);
+  EXPECT_EQ(run["results"][0]["crisp_compliance"].get<double>(), found.crisp.compliance);
   EXPECT_EQ(run["status"], result.info.status);
   EXPECT_EQ(run["warnings"].size(), result.warnings.size());
 }
 
-/// The current folder of the process, while this lives.
+/// Sets the current folder of the process during the lifetime of an object.
 class CurrentFolder {
  public:
   explicit CurrentFolder(const std::string& folder) { std::filesystem::current_path(folder); }
@@ -92,7 +92,7 @@ TEST(Compute, KeepsWhatCameBeforeAnInterruption) {
   const PreparedCase beam = load_case("deploying_beam", Changes{"time.end=0.05"});
   int asked = 0;
   ComputeSettings settings;
-  settings.go_on = [&] { return ++asked < 8; };
+  settings.keep_running = [&] { return ++asked < 8; };
   EXPECT_THROW(compute(beam, settings), Interrupted);
   asked = 0;
   const EndedRun ended = compute_as_far_as_possible(beam, settings);
@@ -119,7 +119,7 @@ const io::Key& own_stiffness() {
   static const io::Key& key = io::key("spring", "half_stiffness")
                                   .number(io::positive("a stiffness", "N/m"))
                                   .when("double")
-                                  .says("The spring is twice as stiff.");
+                                  .description("The spring is twice as stiff.");
   return key;
 }
 
@@ -127,8 +127,8 @@ void read_double(const io::Table& t, Spring& spring) {
   spring.stiffness = 2 * t.number(own_stiffness());
 }
 
-std::unique_ptr<fem::Link> make_double(const Spring& s, const fem::MarkerPlace& a,
-                                       const fem::MarkerPlace& b, double) {
+std::unique_ptr<fem::ForceElement> make_double(const Spring& s, const fem::MarkerLocation& a,
+                                               const fem::MarkerLocation& b, double) {
   return fem::make_spring(s.name, a, b, {.stiffness = s.stiffness});
 }
 
@@ -139,8 +139,8 @@ const SpringRow kDouble{.name = "double",
                         .read = read_double,
                         .make = make_double};
 
-// A ball of 2 kg on the spring of a case: registered under its own name, it moves as on a shipped
-// one of twice the stiffness.
+// A ball of 2 kg on a spring of a type that the test registers under its own name moves as a ball
+// on a shipped spring of twice the stiffness.
 TEST(Compute, ReadsARegisteredSpring) {
   if (find_spring("double") == nullptr) register_spring(kDouble);
   EXPECT_THROW(register_spring(kDouble), Error);
@@ -168,7 +168,7 @@ point_b = [0.0, 0.0]
   };
   const std::vector<double> found = positions("type = \"double\"\nhalf_stiffness = 50.0\n");
   EXPECT_EQ(found, positions("stiffness = 100.0\n"));
-  // An error of the period of (ω h)²/12, relative, shifts the end by 3e-4 m.
+  // The relative error of the period, (ω h)²/12, shifts the end by 3e-4 m.
   EXPECT_NEAR(found.back(), 0.2 * std::cos(std::sqrt(50) * 0.5), 1e-3);
 }
 

@@ -1,5 +1,5 @@
-// Domains that are drawn: a plate with two holes by DXF, by SVG, and as a rectangle with void discs
-// is one and the same plate; the run folder keeps its drawing.
+// Shows that a plate with two holes is the same plate if it is drawn as DXF, drawn as SVG, or
+// described as a rectangle with void discs; and that the run folder keeps the drawing.
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -82,42 +82,43 @@ TEST_F(Plates, AreOneByDxfSvgAndVoids) {
   const std::vector<Component> all = {
       {.center = {0.04, 0.025}, .half_length = 5, .c1 = 4, .c2 = 4, .c3 = 4}};
   const mmc::BodyProblem voids = problem(pierced());
-  std::vector<double> sharp, cells;
+  std::vector<double> crisp, cells;
   for (const std::string& path : {drawn("part.dxf", kDxf), drawn("part.svg", kSvg)}) {
     const mmc::BodyProblem p = problem(path);
     ASSERT_EQ(p.domain.holes.size(), 2u);
     const std::vector<Region> regions = mmc::exported_regions(p),
                               full = mmc::regions_of(p, all, 1e-5);
-    // Within 1e-5 of 80 mm of the circles; voids within 1e-2 of a cell.
+    // The chords deviate from the circles by at most 1e-5 of 80 mm; void discs deviate by at most
+    // 1e-2 of a cell.
     EXPECT_NEAR(area(full), 4e-3 - kHoles, 2 * std::numbers::pi * 13e-3 * 8e-7);
     EXPECT_NEAR(area(regions), area(mmc::exported_regions(voids)),
                 1e-5 * 2 * std::numbers::pi * 13e-3);
-    sharp.push_back(mmc::fractions_of(p, p.design.components()).sum());
+    crisp.push_back(mmc::fractions_of(p, p.design.components()).sum());
     cells.push_back(mmc::plate_of(p).n_domain_cells());
     EXPECT_TRUE(mmc::connectivity_of(p, full).connected);
-    // A cell belongs to the domain as a whole, or not.
+    // A cell belongs to the domain either completely or not at all.
     EXPECT_NEAR(cells.back() * 1e-6, 4e-3 - kHoles, 0.01 * kHoles * 5);
   }
   EXPECT_EQ(cells[0], cells[1]);
-  EXPECT_EQ(sharp[0], sharp[1]);
+  EXPECT_EQ(crisp[0], crisp[1]);
 }
 
-// What is judged is the outline, in which holes and voids are the same.
+// The verification uses the outline, in which holes and voids are equivalent.
 TEST_F(Plates, AreJudgedAlike) {
   std::vector<double> found;
   for (const std::string& path : {drawn("part.dxf", kDxf), pierced()}) {
     const cases::Scene scene = cases::read_scene(io::CaseFile(path));
     const mmc::BodyProblem p = cases::build_problems(scene).front();
-    const verification::OutlineVerification judged =
+    const verification::OutlineVerification verified =
         mmc::verify_design(p, mmc::exported_regions(p), cases::loads_by_position(scene, p));
-    EXPECT_LT(judged.error, 0.005);
-    found.push_back(judged.compliance);
+    EXPECT_LT(verified.error, 0.005);
+    found.push_back(verified.compliance);
   }
   EXPECT_GT(found[0], 0);
-  EXPECT_NEAR(found[0], found[1], 0.01 * found[0]);  // each within 0.5 %
+  EXPECT_NEAR(found[0], found[1], 0.01 * found[0]);  // each has an error of at most 0.5 %
 }
 
-// Bores of drawings and discs leave as circles of their own radius, sides as lines.
+// Bores from drawings and from discs are exported as circles of their own radius, sides as lines.
 TEST_F(Plates, LeaveAsCirclesAndLines) {
   const std::vector<Component> all = {
       {.center = {0.04, 0.025}, .half_length = 5, .c1 = 4, .c2 = 4, .c3 = 4}};
@@ -136,8 +137,8 @@ TEST_F(Plates, LeaveAsCirclesAndLines) {
   }
 }
 
-// What is exported is what is judged: the area of the curves is that of the triangles within the
-// perimeter times the tolerance.
+// The exported curves enclose the verified area: it equals the area of the triangles within
+// perimeter times tolerance.
 TEST_F(Plates, LeaveAsCurvesOfTheJudgedArea) {
   for (const std::string& path : {drawn("part.dxf", kDxf), pierced()}) {
     const cases::Scene scene = cases::read_scene(io::CaseFile(path));
@@ -191,13 +192,13 @@ TEST_F(Plates, RefuseDrawingsThatAreNone) {
   const std::string crossing = said(drawn("bad.dxf", dxf(circle(0, 0, 10))));
   EXPECT_TRUE(contains(crossing, "bad.dxf.toml:6"));
   EXPECT_TRUE(contains(crossing, "domain.outline = "));
-  EXPECT_TRUE(contains(crossing, "bad.dxf: an outline is one outer ring with holes in it"));
+  EXPECT_TRUE(contains(crossing, "bad.dxf: an outline is one outer ring with separate holes"));
   const std::string both =
       scratch.write("both.toml", kShape + "outline = \"a.dxf\"\nsize = [1.0, 1.0]\n" + kRest);
-  EXPECT_TRUE(contains(said(both), "a domain has either a `size`"));
+  EXPECT_TRUE(contains(said(both), "a domain needs exactly one of `size`"));
   const std::string lost =
       scratch.write("lost.toml", kShape + "size = [0.08, 0.05]\nunit = \"mm\"\n" + kRest);
-  EXPECT_TRUE(contains(said(lost), "only an `outline` has it"));
+  EXPECT_TRUE(contains(said(lost), "this key needs an `outline`"));
   const std::string unit = drawn("no_unit.svg", "<svg><circle r='3'/></svg>");
   EXPECT_TRUE(contains(said(unit), "`unit` is needed"));
 }

@@ -1,4 +1,5 @@
-// What a case expects of itself: said where people look, and in the exit code.
+// Shows that missed expectations ([expect]) of a case are reported on the screen, in the files, and
+// by the exit code.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,27 +21,29 @@ TEST(Expectations, ThatAreMissedAreSaid) {
   const std::string folder = scratch / "out";
   const Ended ended = flexmorph(scratch, {"run", file, "-o", folder, "--set", "output.vtk=false"});
   EXPECT_EQ(ended.code, 5);
-  EXPECT_NE(ended.err.find("missed: volume = 0."), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("expectation not met: volume = 0."), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("expected at most 0.1"), std::string::npos) << ended.err;
   EXPECT_EQ(ended.err.find("tip_deflection"), std::string::npos) << ended.err;
   EXPECT_NE(ended.out.find("done, not usable: mass 0.6"), std::string::npos) << ended.out;
-  EXPECT_NE(ended.out.find(" warnings, 1 expectation missed"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find(" warnings, 1 expectation not met"), std::string::npos) << ended.out;
   const std::string report = contents_of(folder + "/report.html");
-  EXPECT_LT(report.find("MISSED"), report.find("<h2>Results"));
+  EXPECT_LT(report.find("NOT MET"), report.find("<h2>Results"));
   const json run = run_json(folder);
   EXPECT_EQ(run["status"], "done, not usable");
   EXPECT_FALSE(run["expect"]["volume"]["holds"].get<bool>());
   EXPECT_TRUE(run["expect"]["plate.tip_deflection.largest"]["holds"].get<bool>());
 }
 
-// With changes it is another case: said, but no failure.
+// With changes the case is another one: missed expectations are reported, but they are not a
+// failure.
 TEST(Expectations, OfAChangedCaseAreSaid) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
   const Ended ended = flexmorph(
       scratch, {"run", "beam_heated_static", "-o", folder, "--set", "body.youngs_modulus=1e9"});
   EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_NE(ended.err.find("not as the case without --set: "), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("different from the case without --set: "), std::string::npos)
+      << ended.err;
   EXPECT_NE(ended.out.find("done: "), std::string::npos) << ended.out;
 }
 

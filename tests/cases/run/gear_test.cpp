@@ -1,5 +1,5 @@
-// The planar gear: the ratio of angles over many turns, the powers of a driven train, and the
-// frequency of a train that swings on a spring.
+// Shows that the planar gear keeps the ratio of angles over many turns, transmits the power of a
+// driven train, and that a train on a spring oscillates with the analytic frequency.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kInertiaA = 0.02, kInertiaB = 0.3;  // [kg m^2]
 
-/// Two wheels on axles of their own, turned by 0.3 and -1.1 rad at the start.
+/// Returns a case with two wheels on separate axles, at 0.3 and -1.1 rad at the start.
 std::string wheels(const std::string& teeth, double end, const std::string& more) {
   return R"toml(
 title = "Two wheels"
@@ -79,9 +79,10 @@ struct Train {
 
 class GearTrain : public ::testing::TestWithParam<Train> {};
 
-// Angles, and with J = J_a + r² J_b and the damper's c: the motor gives (J α + r² c ω) ω, the teeth
-// (r J_b α + r c ω) r ω. Accelerations of generalized-alpha, in natural coordinates, have an error
-// of the size of h² ω⁴, ω each wheel's own largest rate, once the first steps are over.
+// Reference values, with J = J_a + r² J_b and the damper's c: the motor power is (J α + r² c ω) ω,
+// the teeth transmit (r J_b α + r c ω) r ω. The accelerations of generalized-alpha in natural
+// coordinates have an error of the size h² ω⁴ after the first steps, where ω is the largest rate of
+// the wheel in question.
 TEST_P(GearTrain, KeepsItsRatioAndPassesPowerOn) {
   const auto& [teeth, inner, r] = GetParam();
   const Scratch scratch;
@@ -95,7 +96,7 @@ TEST_P(GearTrain, KeepsItsRatioAndPassesPowerOn) {
   EXPECT_GT(a.back() - a.front(), 4 * kTurn);
   for (size_t i = 0; i < t.size(); ++i) {
     const double turned_a = a[i] - 0.3, turned_b = b[i] + 1.1;
-    EXPECT_NEAR(turned_b, r * turned_a, 1e-11) << t[i];  // what Newton's method leaves
+    EXPECT_NEAR(turned_b, r * turned_a, 1e-11) << t[i];  // tolerance of Newton's method
     if (turned_a > kTurn) {
       EXPECT_NEAR(turned_b / turned_a, r, 1e-12) << t[i];
     }
@@ -115,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Teeth, GearTrain,
                                            Train{"[20, 50]", "true", 0.4},
                                            Train{"[30, 10]", "false", -3}));
 
-// A spring k on the pinion: J θ'' = -k θ with J = J_a + r² J_b.
+// Reference: a spring k on the pinion gives J θ'' = -k θ with J = J_a + r² J_b.
 TEST(Gear, SwingsOnASpringAsOneInertia) {
   const Scratch scratch;
   const io::CsvTable motion = motion_of(scratch, wheels("[10, 20]", 2, R"toml(
@@ -126,9 +127,9 @@ stiffness = 3.0
 rest_angle = -0.1
 )toml"));
   const auto t = motion.numbers("time"), a = motion.numbers("pinion.angle");
-  const double pulsation = std::sqrt(3.0 / (kInertiaA + 0.25 * kInertiaB));
+  const double angular_frequency = std::sqrt(3.0 / (kInertiaA + 0.25 * kInertiaB));
   for (size_t i = 0; i < t.size(); ++i)
-    EXPECT_NEAR(a[i], 0.1 + 0.2 * std::cos(pulsation * t[i]), 1e-5) << t[i];
+    EXPECT_NEAR(a[i], 0.1 + 0.2 * std::cos(angular_frequency * t[i]), 1e-5) << t[i];
 }
 
 TEST(Gear, IsRefusedWhereItMakesNoSense) {
@@ -139,10 +140,10 @@ TEST(Gear, IsRefusedWhereItMakesNoSense) {
     EXPECT_EQ(ended.code, 2) << change;
     return ended.err;
   };
-  EXPECT_TRUE(contains(complaint("joint.mesh.a=ground"), "a gear has two rigid bodies"));
+  EXPECT_TRUE(contains(complaint("joint.mesh.a=ground"), "a gear connects two rigid bodies"));
   EXPECT_TRUE(contains(complaint("joint.mesh.teeth=[0, 3]"), "a number of teeth"));
   EXPECT_TRUE(contains(complaint("joint.mesh.teeth=[3.5, 3]"), "a number of teeth"));
-  EXPECT_TRUE(contains(complaint("joint.mesh.point_a=[0, 0]"), "does not look at points"));
+  EXPECT_TRUE(contains(complaint("joint.mesh.point_a=[0, 0]"), "uses no points"));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Edges in hubs at angles and at both ends: two plates in one hub against one, an angle of the weld
-// against one of the hub, and a beam between two hubs against the textbook, at rest and driven.
+// Shows that edges in hubs at angles and at both ends of a body are correct: two plates in one hub
+// against one plate, an angle of the weld against an angle of the hub, and a beam between two hubs
+// against textbook values, static and driven.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +27,7 @@ std::string number(double x) {
   return out.str();
 }
 
-/// A hub that swings by a drive from an angle of its own.
+/// Returns a hub whose angle is driven from the given start angle.
 std::string hub(double angle) {
   return R"toml(
 title = "Plates in a hub"
@@ -71,7 +72,8 @@ double largest(const std::vector<double>& x) {
 
 class PlatesInAHub : public ::testing::TestWithParam<const char*> {};
 
-// Half a turn apart they move as one does; the hub has twice the moment, and no force.
+// Two plates half a turn apart both move as a single plate; the hub has twice the moment and no
+// force.
 TEST_P(PlatesInAHub, HalfATurnApartMoveAsOne) {
   const Scratch scratch;
   const io::CsvTable one = motion_of(scratch, hub(0) + plate("arm", 0, GetParam()), "one"),
@@ -88,7 +90,7 @@ TEST_P(PlatesInAHub, HalfATurnApartMoveAsOne) {
   EXPECT_GT(bend, 1e-3);
   ASSERT_EQ(tip.size(), other.size());
   for (size_t i = 0; i < tip.size(); ++i) {
-    EXPECT_NEAR(same[i], tip[i], 1e-6 * bend) << i;  // what Newton's method leaves
+    EXPECT_NEAR(same[i], tip[i], 1e-6 * bend) << i;  // tolerance of Newton's method
     EXPECT_NEAR(other[i], tip[i], 1e-6 * bend) << i;
     EXPECT_NEAR(both[i], 2 * m[i], 1e-5 * most) << i;
     EXPECT_NEAR(x[i], 0, 1e-5 * force) << i;
@@ -109,7 +111,7 @@ TEST(HubAngle, IsThatOfTheHub) {
   }
 }
 
-/// A beam of 1 m between two hubs, 0.02 m square and 7800 kg/m^3.
+/// Returns a beam of 1 m between two hubs, with a square section of 0.02 m and 7800 kg/m^3.
 std::string between(const std::string& gravity, const std::string& time, const std::string& right) {
   return "title = \"A beam between two hubs\"\n" + gravity + "[time]\n" + time + R"toml(
 [[hub]]
@@ -149,7 +151,7 @@ point = [0.5, 0.0]
 )toml";
 }
 
-// w = ρ g A: w L/2 and w L²/12 at both ends.
+// Reference, with the weight per length w = ρ g A: forces w L/2 and moments w L²/12 at both ends.
 TEST(BeamBetweenHubs, CarriesItsWeight) {
   const Scratch scratch;
   const io::CsvTable motion = motion_of(
@@ -164,7 +166,8 @@ TEST(BeamBetweenHubs, CarriesItsWeight) {
   }
 }
 
-// The right end turns by φ = 1e-3, slowly: 4 E I φ/L there, 2 E I φ/L on the left.
+// The right end turns slowly by φ = 1e-3. Reference: the moments are 4 E I φ/L at the right end and
+// 2 E I φ/L at the left end.
 TEST(BeamBetweenHubs, BendsAsItsEndIsTurned) {
   const Scratch scratch;
   const io::CsvTable motion =

@@ -1,5 +1,5 @@
-// Numbers do not depend on the language of the machine: the program writes the same bytes, times
-// apart, where printf, strtod and streams have a decimal comma.
+// Shows that numbers do not depend on the locale: the program writes equal bytes (except run times)
+// where printf, strtod and streams use a decimal comma.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -15,11 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Programs that are started while an object of this class exists run with the locale de_DE.
+/// Programs that are started during the lifetime of an object of this class run with the locale
+/// de_DE.
 class GermanLocale {
  public:
   explicit GermanLocale(const Scratch& scratch) : said_(scratch / "said") {
-    // The locale is made here: few machines have it installed.
+    // The locale is created here, because few machines have it installed.
     const std::string folder = scratch / "locales";
     fs::create_directories(folder);
     made_ =
@@ -35,7 +36,7 @@ class GermanLocale {
   GermanLocale(const GermanLocale&) = delete;
   GermanLocale& operator=(const GermanLocale&) = delete;
 
-  /// Did every process that was started speak so?
+  /// Returns success if every started process used this locale.
   ::testing::AssertionResult spoken() const {
     if (!made_)
       return ::testing::AssertionFailure() << "localedef made no de_DE.UTF-8: package 'locales'?";
@@ -57,7 +58,7 @@ class GermanLocale {
   bool made_ = false;
 };
 
-/// A table without its columns of times and memory.
+/// Returns a table without its columns of run times and memory.
 std::string without_times(const io::CsvTable& table) {
   std::string out;
   for (size_t c = 0; c < table.columns.size(); ++c) {
@@ -70,8 +71,8 @@ std::string without_times(const io::CsvTable& table) {
   return out;
 }
 
-/// All files of a folder by their path in it, times apart: those of run.json, of tables, and
-/// `timed` files as a whole.
+/// Returns all files of a folder by their path in it, without run times: these are removed from
+/// run.json and from tables, and files in `timed` are left out.
 std::map<std::string, std::string> files_of(const std::string& folder, const Words& timed = {}) {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -114,8 +115,8 @@ void expect_same(const std::map<std::string, std::string>& a,
   EXPECT_EQ(a.size(), b.size());
 }
 
-/// The same command in both languages.
-/// @returns how many files were compared
+/// Runs a command in both locales and compares the files.
+/// @returns the number of compared files
 size_t expect_same_files(const Words& command, const Words& timed = {}, int code = 0) {
   const Scratch scratch;
   const auto run = [&](const std::string& folder) {
@@ -152,7 +153,7 @@ TEST_F(Comma, ADesignAndItsMotion) {
   EXPECT_GE(expect_same_files({"run", FLEXMORPH_SHORT_CASE}, {}, kTooFew), 30u);
 }
 
-// In space; in the plane rigid bodies, formulas and heat.
+// Cases in space, and in the plane with rigid bodies, formulas and heat.
 TEST_F(Comma, ShapesInSpaceAndMechanismsWithHeat) {
   EXPECT_GE(expect_same_files(with({"run", "cantilever_roll_up"},
                                    {"body.elements=[4, 1]", "static.steps=4", "expect="})),
@@ -161,7 +162,7 @@ TEST_F(Comma, ShapesInSpaceAndMechanismsWithHeat) {
             6u);
 }
 
-// Run times are in sweep.md, compare.md and compare.svg.
+// sweep.md, compare.md and compare.svg contain run times.
 TEST_F(Comma, Studies) {
   EXPECT_GE(
       expect_same_files(with({"sweep", "plate_pendulum", "--vary", "body.thickness=0.009,0.011"},
@@ -175,9 +176,10 @@ TEST_F(Comma, Studies) {
             15u);
 }
 
-// Ladders that fit into the budget as a whole; what is recommended then depends on run times.
+// The refinement series fit into the budget completely. The recommended cases are left out, because
+// they depend on run times.
 TEST_F(Comma, Accuracy) {
-  EXPECT_GE(expect_same_files(with({"accuracy", "short_beam", "--ladders", "band", "--budget",
+  EXPECT_GE(expect_same_files(with({"accuracy", "short_beam", "--refinements", "band", "--budget",
                                     "10min", "--no-verify", "--quiet"},
                                    {"design.cell=0.1", "design.min_feature=0",
                                     "design.components=[2, 1]", "output.tolerance=2e-3",

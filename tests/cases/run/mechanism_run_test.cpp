@@ -1,4 +1,5 @@
-// What runs leave of mechanisms: columns against rigid-body mechanics, parts of the motion, plots.
+// Shows that the output of mechanisms is correct: columns against rigid-body mechanics, parts of
+// the files of the motion, plots.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,9 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double kPi = std::numbers::pi;
 
-// A rod that a motor turns about its end, more than once around; its centre of mass is 0.3 m from
-// there. A pointer turns likewise. Beside it a plate in a hub, so that the motion has a flexible
-// part, too.
+// A rod that a motor turns about its end by more than one turn; its centre of mass is 0.3 m from
+// this end. A pointer is driven equally. A plate in a hub is added so that the motion has a
+// flexible body, too.
 constexpr const char* kRod = R"toml(
 title = "Driven rod"
 gravity = [0.0, -9.81]
@@ -125,9 +126,10 @@ size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
-// m (a - g) at the centre of mass. Accelerations of generalized-alpha, in natural coordinates, have
-// an error of the size of h² ω⁴ = 1e-6 · 15.2⁴ = 0.053 per second squared and metre of a body, and
-// at the start a transient of first order in h, n 0.8ⁿ after n steps: gone, 1e-4 of it, after 60.
+// Reference: the force is m (a - g) at the centre of mass. Accelerations of generalized-alpha in
+// natural coordinates have an error of the size h² ω⁴ = 1e-6 · 15.2⁴ = 0.053 per second squared and
+// metre of a body. At the start there is also a transient of first order in h, which decays as n
+// 0.8ⁿ after n steps, to 1e-4 after 60 steps.
 TEST(MechanismRun, ForcesOfADrivenRodAreThoseOfMechanics) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
@@ -135,21 +137,22 @@ TEST(MechanismRun, ForcesOfADrivenRodAreThoseOfMechanics) {
   ASSERT_EQ(ended.code, 0) << ended.err;
   const io::CsvTable motion = io::read_csv(folder + "/motion.csv");
   EXPECT_EQ(motion.columns,
-            (Words{"time",          "flag.tip_deflection", "flag.length",   "rod.x",
-                   "rod.y",         "rod.angle",           "pointer.x",     "pointer.y",
-                   "pointer.angle", "rod.delta_x",         "rod.delta_y",   "rod.delta_angle",
-                   "hinge.force_x", "hinge.force_y",       "hinge.moment",  "motor.force_x",
-                   "motor.force_y", "motor.moment",        "motor.power",   "spin.force_x",
-                   "spin.force_y",  "spin.moment",         "spin.power",    "wall.force_x",
-                   "wall.force_y",  "wall.moment",         "wall.power",    "energy.kinetic",
-                   "energy.strain", "energy.potential",    "energy.defect", "power.drive",
+            (Words{"time",          "flag.tip_deflection", "flag.length",  "rod.x",
+                   "rod.y",         "rod.angle",           "pointer.x",    "pointer.y",
+                   "pointer.angle", "rod.delta_x",         "rod.delta_y",  "rod.delta_angle",
+                   "hinge.force_x", "hinge.force_y",       "hinge.moment", "motor.force_x",
+                   "motor.force_y", "motor.moment",        "motor.power",  "spin.force_x",
+                   "spin.force_y",  "spin.moment",         "spin.power",   "wall.force_x",
+                   "wall.force_y",  "wall.moment",         "wall.power",   "energy.kinetic",
+                   "energy.strain", "energy.potential",    "energy.error", "power.drive",
                    "power.feed",    "power.inflow"}));
   const auto column = [&](const char* name) { return motion.numbers(name); };
   const auto t = column("time"), fx = column("hinge.force_x"), fy = column("hinge.force_y"),
              moment = column("motor.moment"), power = column("motor.power"),
              angle = column("rod.angle"), all = column("power.drive"), spin = column("spin.moment"),
              spun = column("spin.power");
-  // What hangs on the rod at its hinge: the pointer's weight and turning, for it is centred there.
+  // The hinge of the rod also carries the weight of the pointer, whose centre of mass lies at the
+  // hinge.
   const double m = 2, l = 0.3, g = 9.81, I = 0.05, carried = 0.1;
   ASSERT_EQ(t.size(), 501u);
   for (size_t i = 0; i < t.size(); ++i) {
@@ -160,7 +163,7 @@ TEST(MechanismRun, ForcesOfADrivenRodAreThoseOfMechanics) {
                        (m + carried) * Vec2(0, g);
     EXPECT_NEAR(angle[i], turn.angle, 1e-9) << t[i];
     EXPECT_NEAR(power[i], moment[i] * turn.rate, 1e-9 * 100) << t[i];
-    // On the pointer, for b is the ground.
+    // The moment acts on the pointer, because b is the ground.
     EXPECT_NEAR(spun[i], spin[i] * turn.rate, 1e-9) << t[i];
     EXPECT_NEAR(all[i], power[i] + spun[i], 1e-9 * 100) << t[i];
     if (i < 60) continue;
@@ -175,7 +178,8 @@ TEST(MechanismRun, ForcesOfADrivenRodAreThoseOfMechanics) {
                            "rod.delta_y", "rod.delta_angle"})
     for (const double each : column(name)) EXPECT_NEAR(each, 0, 1e-9) << name;
 
-  // Three bodies, of which the pointer has no size; six times from 0 to 0.5 s.
+  // Three bodies are written at six times from 0 to 0.5 s; the pointer has no size and is not
+  // drawn.
   const std::string index = contents_of(folder + "/motion/motion.pvd");
   for (const auto& [part, times] :
        {std::pair{"part=\"0\"", 6u}, {"part=\"1\"", 6u}, {"part=\"2\"", 0u}})
@@ -186,7 +190,8 @@ TEST(MechanismRun, ForcesOfADrivenRodAreThoseOfMechanics) {
   for (const char* name : {"inputs", "mechanism", "error_rod", "joint_forces"})
     EXPECT_TRUE(fs::is_regular_file(folder + "/plots/" + name + ".svg")) << name;
   const std::string report = contents_of(folder + "/report.html");
-  for (const char* heading : {"Inputs", "Mechanism in motion", "Error of rod", "Joint forces"})
+  for (const char* heading :
+       {"Inputs", "Snapshots of the mechanism", "Trajectory error of rod", "Joint forces"})
     EXPECT_TRUE(contains(report, "<h2>" + std::string(heading))) << heading;
   const std::string moments = contents_of(folder + "/plots/mechanism.svg");
   for (const char* title : {"t = 0 s", "t = 0.167 s", "t = 0.334 s", "t = 0.5 s"})
@@ -207,8 +212,8 @@ TEST(MechanismRun, RigidBodiesAreDrawnAroundTheirCentres) {
   EXPECT_TRUE(cases::drawn_corners(scene.rigid_bodies[1], mechanism.model, x).empty());
 }
 
-// Of a plate in motion: the energies of its cells are that of the plate, wherever its root is;
-// displacements are counted from where it lay.
+// For a designed plate in motion the energies of its cells sum up to the energy of the plate,
+// wherever its root is; displacements refer to its initial configuration.
 TEST(MechanismRun, DesignedPlatesShowTheirEnergyAndDisplacement) {
   const cases::Scene scene =
       cases::read_scene(io::CaseFile(std::string(FLEXMORPH_CASES) + "/rotating_plate_v05.toml"));
@@ -216,8 +221,8 @@ TEST(MechanismRun, DesignedPlatesShowTheirEnergyAndDisplacement) {
   const Grid& grid = scene.designs[0].grid;
   VectorXd density = VectorXd::LinSpaced(grid.n_cells(), 0.2, 1);
   mechanism.model.set_factors(mechanism.model.bodies()[0], {grid, density, density});
-  fem::State x = fem::start_state(mechanism.model, mechanism.growths, 0, fem::Start::rigid,
-                                  mechanism.motion.placement);
+  fem::State x = fem::start_state(mechanism.model, mechanism.moving_roots, 0, fem::Start::rigid,
+                                  mechanism.motion.body_poses);
   const fem::Body& body = mechanism.model.body("plate");
   const fem::ReferencePose pose = cases::start_pose(scene, scene.body("plate"));
   mechanism.model.prepare(x);
@@ -225,7 +230,7 @@ TEST(MechanismRun, DesignedPlatesShowTheirEnergyAndDisplacement) {
   double largest = 0;
   for (const double u : rigid.displacement) largest = std::max(largest, std::abs(u));
   EXPECT_LT(largest, 1e-9);
-  // Half as long again in x: whatever is on a line x = 1.5 X moves by 0.5 X.
+  // The plate is stretched by 1.5 in x: a point at x = 1.5 X has moved by 0.5 X.
   for (int k = 0; k < body.element->n_vectors(); ++k) x.q[body.first_dof + 2 * k] *= 1.5;
   mechanism.model.prepare(x);
   const cases::DesignedSurface s = cases::designed_surface(body, x, pose, grid, density);
@@ -242,7 +247,8 @@ TEST(MechanismRun, DesignedPlatesShowTheirEnergyAndDisplacement) {
   EXPECT_NEAR(sum, whole, 1e-9 * whole);
 }
 
-// A disc of 24 sides: its area by its quads; a notch takes a sixth of it, towards -x of its frame.
+// The disc has 24 sides; its area is the sum of its quads. A notch, a sixth of the disc, lies
+// towards -x of its frame.
 TEST(MechanismRun, HubsAreDiscsThatTurn) {
   fem::FrameMotion frame;
   frame.origin = Vec2(2, -1);
@@ -273,7 +279,7 @@ TEST(MechanismRun, HubsAreDiscsThatTurn) {
   }
 }
 
-// P (36), (37): two designs on moving bars, and what the platform misses of its path.
+// Two designs on moving bars. The reference path of the platform is P (36), (37).
 TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
@@ -285,7 +291,7 @@ TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
            "design.bar2.components=[10, 2]", "design.bar1.half_length=0.05",
            "design.bar2.half_length=0.05", "output.motion_every=0.02", "output.tolerance=1e-3"});
   ASSERT_EQ(ended.code, kTooFew) << ended.err;
-  // On the cells of the designs, which judge them.
+  // The designs are assessed by the motion on their cells.
   const io::CsvTable motion = io::read_csv(folder + "/motion_verified.csv");
   const auto t = motion.numbers("time"), x = motion.numbers("platform.x"),
              y = motion.numbers("platform.y"), dx = motion.numbers("platform.delta_x"),
@@ -299,7 +305,7 @@ TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
     EXPECT_EQ(turned[i], angle[i]);
     if (std::abs(dy[i]) > largest) largest = std::abs(dy[i]), when = t[i];
   }
-  // The platform starts with 0.5 θ'' = 3π m/s² upwards: 2 kg on the two bearings.
+  // The platform of 2 kg starts with 0.5 θ'' = 3π m/s² upwards, carried by its two bearings.
   EXPECT_NEAR(motion.numbers("at_C.force_y")[0] + motion.numbers("at_D.force_y")[0], -6 * kPi,
               0.02 * 6 * kPi);
   const json written = run_json(folder);
@@ -330,10 +336,10 @@ TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
                            "start_bar1.svg", "start_bar2.svg", "design_bar1.png", "design_bar2.png",
                            "convergence_bar1.svg", "convergence_bar2.svg"})
     EXPECT_TRUE(fs::is_regular_file(folder + "/plots/" + name)) << name;
-  EXPECT_TRUE(contains(contents_of(folder + "/report.html"), "Components of bar2"));
+  EXPECT_TRUE(contains(contents_of(folder + "/report.html"), "Design of bar2"));
 }
 
-// A plate without a design moves beside one with a design, each with its own fields.
+// A plate without a design moves together with a designed one; each has its own fields.
 TEST(MechanismRun, PlatesWithoutADesignAreThereToo) {
   const Scratch scratch;
   std::string text = contents_of(std::string(FLEXMORPH_CASES) + "/motion_platform.toml");
@@ -365,8 +371,8 @@ TEST(MechanismRun, CheckDescribesTheMechanism) {
   const std::string out = flexmorph(scratch, {"check", "motion_platform"}).out;
   for (const char* words :
        {"rigid bodies          5 (platform, A, B, C, D), 20 unknowns, 2.4 kg\n",
-        "3 without the drives of joints and flows, 0 with them\n",
-        "of platform: x 'path_x', y 'path_y', angle 0; drives that follow: L1, L2, alpha1\n",
+        "3 without the drives of joints and flows, 0 with these drives\n",
+        "of platform: x 'path_x', y 'path_y', angle 0; drives computed from it: L1, L2, alpha1\n",
         "constraint rows: 4 revolute, 4 weld, 1 angle_drive\n", "springs               none\n"})
     EXPECT_TRUE(contains(out, words)) << words;
   EXPECT_FALSE(contains(out, "rigid bodies          none"));
@@ -376,8 +382,9 @@ TEST(MechanismRun, CheckDescribesTheMechanism) {
                           "damping=0.1}, {b='pointer', stiffness=1.0}]"});
   EXPECT_TRUE(contains(spring.out, "springs               3: 2 linear, 1 torsion\n"))
       << spring.out << spring.err;
-  // Rod and pointer turn freely once their two drives are gone.
-  EXPECT_TRUE(contains(spring.out, "2 without the drives of joints and flows, 0 with them"));
+  // Without their two drives, rod and pointer rotate freely.
+  EXPECT_TRUE(
+      contains(spring.out, "2 without the drives of joints and flows, 0 with these drives"));
   EXPECT_TRUE(
       contains(flexmorph(scratch, {"check", "plate_pendulum"}).out, "rigid bodies          none"));
 }

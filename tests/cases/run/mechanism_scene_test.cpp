@@ -1,5 +1,5 @@
-// Mechanisms that cannot be: each is refused with words that name what is wrong, exit code 2, and
-// leaves nothing behind; positions that cannot be reached end with code 3, time and joints.
+// Shows that impossible mechanisms are refused with exit code 2 and leave no folder, and that
+// positions which cannot be reached end with exit code 3; messages name the cause.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Edit = std::pair<std::string, std::string>;  // what is replaced (empty: appended), by what
+using Edit = std::pair<std::string, std::string>;  // old text (empty: append), new text
 
-/// Links of 0.15, 0.5, 0.5 and 0.55 m (ground), all rigid.
+/// A four-bar mechanism with rigid links of 0.15, 0.5, 0.5 and 0.55 m (ground).
 const std::string kFourBar = R"(
 [time]
 end = 0.5
@@ -80,7 +80,7 @@ b = "crank"
 angle = "turn"
 )";
 
-/// Two links of 0.3 m and a hand at their end, moved along a path.
+/// Two links of 0.3 m with a hand at their end that is moved along a path.
 const std::string kArm = R"(
 [time]
 end = 1.0
@@ -177,7 +177,7 @@ std::string shipped(const std::string& name) {
 }
 
 struct Told : Ended {
-  bool left_behind = false;  ///< is there a folder of the run?
+  bool left_behind = false;  ///< True if a run folder exists.
 };
 
 Told run_text(const std::string& text, const Scratch& scratch) {
@@ -190,9 +190,9 @@ Told run_text(const std::string& text, const Scratch& scratch) {
 
 struct Bad {
   std::string name;
-  std::string text;              ///< of the case
-  std::vector<Edit> edits;       ///< that make it bad
-  std::vector<std::string> say;  ///< what the message contains
+  std::string text;              ///< Text of the case.
+  std::vector<Edit> edits;       ///< Changes that make it invalid.
+  std::vector<std::string> say;  ///< Texts that the message contains.
   int code = 2;
 };
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
@@ -212,20 +212,20 @@ std::vector<Bad> bad_ones() {
       {"rigid_body_without_joint",
        kFourBar,
        {{"", "\n[[rigid_body]]\nname = \"lost\"\nmass = 1.0\ninertia = 1.0\n"}},
-       {"rigid_body.lost.name", "nothing holds 'lost'", "[[spring]]"}},
-      {"plate_without_joint", rocker, {{"", plate}}, {"body.spare", "nothing holds 'spare'"}},
+       {"rigid_body.lost.name", "acts on 'lost'", "[[spring]]"}},
+      {"plate_without_joint", rocker, {{"", plate}}, {"body.spare", "acts on 'spare'"}},
       {"joint_to_nobody",
        kFourBar,
        {{"point_a = [0.15, 0.0]\nb = \"coupler\"", "point_a = [0.15, 0.0]\nb = \"copler\""}},
        {"joint.B.b", "copler", "coupler"}},
-      {"two_drives_on_one_freedom",
+      {"two_drives_on_one_dof",
        kFourBar,
        {{"", joint("angle_drive", "name = \"second\"\nb = \"rocker\"\nangle = 1.9")}},
-       {"of them drives: joints 'motor', 'second'"}},
+       {"drives of this group are: joints 'motor', 'second'"}},
       {"second_drive_that_agrees",
        kFourBar,
        {{"", joint("angle_drive", "name = \"second\"\nb = \"crank\"\nangle = \"turn\"")}},
-       {"'motor', 'second' hold the same freedom"}},
+       {"'motor', 'second' constrain one degree of freedom more than once"}},
       {"drives_of_different_speed",
        kFourBar,
        {{"", joint("angle_drive", "name = \"second\"\nb = \"crank\"\nangle = 1.5707963267948966")}},
@@ -233,11 +233,11 @@ std::vector<Bad> bad_ones() {
       {"drive_of_a_bar_that_follows",
        platform,
        {{"[esl]", joint("angle_drive", "name = \"turn_B\"\nb = \"B\"\nangle = 2.65") + "[esl]"}},
-       {"of them drives: joints 'turn_B'", "'angle of the trajectory'"}},
+       {"drives of this group are: joints 'turn_B'", "'angle of the trajectory'"}},
       {"redundant",
        kFourBar,
        {{"", joint("revolute", "name = \"again\"\npoint_a = [0.55, 0.0]\nb = \"rocker\"")}},
-       {"'D', 'again' hold the same 2 freedoms"}},
+       {"'D', 'again' constrain 2 degrees of freedom more than once"}},
       {"contradictory",
        kFourBar,
        {{"", joint("revolute", "name = \"off\"\npoint_a = [0.57, 0.0]\nb = \"rocker\"")}},
@@ -251,7 +251,7 @@ std::vector<Bad> bad_ones() {
       {"drive_from_a_path_for_nothing",
        platform,
        {{"[[rigid_body]]", "[[drive]]\nname = \"spare\"\nfrom = \"trajectory\"\n\n[[rigid_body]]"}},
-       {"drive 'spare' follows from the trajectory", "no flow, angle or distance"}},
+       {"drive 'spare' follows from the trajectory", "not drive a flow, an angle"}},
       {"path_that_nothing_follows",
        kFourBar,
        {{"", "\n[trajectory]\nbody = \"rocker\"\nx = 0.55\ny = 0.0\n"}},
@@ -278,7 +278,7 @@ std::vector<Bad> bad_ones() {
       {"plate_in_space",
        rocker,
        {{"space = \"plane\"", "space = \"space\""}},
-       {"body.space", "rigid bodies live in the plane"}},
+       {"body.space", "plates are in the plane"}},
       {"spin_up_of_a_hub",
        kFourBar,
        {{"step = 1e-3", "step = 1e-3\nstart = \"hub_at_rest\""}},
@@ -289,13 +289,13 @@ std::vector<Bad> bad_ones() {
                  "\n[[body.line]]\nindex = 2\nfree = true\n\n[[hub]]\nname = \"hub\"\n"
                  "angular_velocity = 0.0\n" +
                  joint("weld", "body = \"spare\"\nedge = \"line 2\"\nto = \"hub\"")}},
-       {"edge", "a free line slides in one of them"}},
-      {"freedoms_not_at_rest",
+       {"edge", "a free line is held in a rigid body"}},
+      {"dofs_not_at_rest",
        shipped("telescopic_crane"),
        {{"position = [0.764, -0.064]", "position = [0.51, 0.077]\nangle = -1.0"},
         {"[time]\n", "[time]\nstart = \"prestretched\"\n"}},
        {"prestretched", "1 here", "start = \"rigid\""}},
-      // The reach of 0.6 m is passed at 0.5 s.
+      // The path passes the largest reach of 0.6 m at 0.5 s.
       {"path_out_of_reach", kArm, {}, {"trajectory", "t = 0.49999", " s", "'at_elbow'"}, 3},
       {"path_never_in_reach",
        kArm,
@@ -318,10 +318,10 @@ TEST_P(BadMechanism, IsRefusedWithWords) {
 INSTANTIATE_TEST_SUITE_P(Cases, BadMechanism, ::testing::ValuesIn(bad_ones()),
                          [](const auto& test) { return test.param.name; });
 
-/// The rocker is driven: it can go no farther than where crank and coupler are stretched.
+/// The rocker is driven; it cannot move beyond the position where crank and coupler are in line.
 const std::vector<Edit> kDeadCentre = {{"b = \"crank\"\nangle", "b = \"rocker\"\nangle"},
                                        {"pi/2 + 2*t", "1.911 - 0.5*t"}};
-/// Cosine rule for a distance of 0.65 m between the pins of crank and coupler's end.
+/// Time at which the outer pins of crank and coupler are 0.65 m apart, by the cosine rule.
 const double kDeadTime =
     (1.911 -
      (std::numbers::pi - std::acos((0.55 * 0.55 + 0.25 - 0.65 * 0.65) / (2 * 0.55 * 0.5)))) /
@@ -342,7 +342,7 @@ TEST(DeadCentre, IsFoundBeforeTheRunStarts) {
   EXPECT_NEAR(time_in(told.err), kDeadTime, 1e-6);
 }
 
-/// A pendulum that nothing drives: the path of the rest is not looked at before.
+/// A pendulum without a drive: positions of mechanisms with free motions are not checked before.
 const std::string kPendulum =
     "\n[[rigid_body]]\nname = \"bob\"\nmass = 0.1\ninertia = 0.001\nposition = [0.25, 0.3]\n" +
     joint("revolute",
@@ -363,7 +363,7 @@ TEST(DeadCentre, EndsARunWithTimeAndJoints) {
   EXPECT_NEAR(time.back(), kDeadTime, 2e-3);
 }
 
-/// A parallelogram at its change point is singular. Passed within 5e-7 of a radian at step 50.
+/// A parallelogram is singular at its change point, which is passed within 5e-7 rad at step 50.
 TEST(NearlySingular, WarnsWithTimeAndJoints) {
   const Scratch scratch;
   const Told told = run_text(
@@ -383,7 +383,7 @@ TEST(NearlySingular, WarnsWithTimeAndJoints) {
   ASSERT_EQ(written["warnings"].size(), 1u);
   const std::string warning = written["warnings"][0];
   EXPECT_NEAR(time_in(warning), 0.05, 1e-12);
-  // All pins lie on a line, along which the links may be under any tension.
+  // All pins lie on one line, along which the forces in the links are undetermined.
   for (const char* pin : {"'A'", "'B'", "'C'", "'D'"})
     EXPECT_TRUE(contains(warning, pin)) << warning;
   EXPECT_TRUE(contains(warning, "nearly dependent")) << warning;

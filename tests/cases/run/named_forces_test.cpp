@@ -1,5 +1,6 @@
-// Columns of hubs and of named springs: a hub that swings a stiff plate against the rigid body it
-// nearly is, weight at rest in a hub, springs against their own laws, and powers against energies.
+// Shows that the columns of hubs and named springs are correct: a hub that swings a stiff plate
+// against rigid-body mechanics, static weight in a hub, springs against their laws, and powers
+// against energies.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +18,7 @@ io::CsvTable motion_of(const Scratch& scratch, const std::string& text) {
   return io::read_csv(folder + "/motion.csv");
 }
 
-/// A plate of 0.4 x 0.1 x 0.01 m^3 in a hub 0.2 m above the origin: 3.12 kg.
+/// Returns a plate of 0.4 x 0.1 x 0.01 m^3 (3.12 kg) in a hub 0.2 m above the origin.
 std::string plate(const std::string& time, const std::string& hub, const std::string& more = "") {
   return "title = \"A plate in a hub\"\n" + time + R"toml(
 [[hub]]
@@ -47,7 +48,8 @@ to = "shaft"
 
 constexpr double kMass = 7800 * 0.4 * 0.1 * 0.01, kG = 9.81;
 
-// At rest the hub carries the weight, 0.2 m away; the plate hangs by less than 1e-5 m.
+// In the static state the hub carries the weight, whose lever is 0.2 m; the plate deflects by less
+// than 1e-5 m.
 TEST(HubColumns, CarryTheWeight) {
   const Scratch scratch;
   const io::CsvTable motion =
@@ -63,8 +65,9 @@ TEST(HubColumns, CarryTheWeight) {
   }
 }
 
-// Turned by θ(t): what a rigid plate asks of its hub, but for what bends: (ω_drive/ω_bending)² of
-// it, below 1e-3. The power is moment times rate, and does the work that the plate's energy takes.
+// The hub turns by θ(t). Reference: forces and moment of a rigid plate; bending changes them by
+// (ω_drive/ω_bending)², less than 1e-3. The power is moment times rate, and its integral is the
+// change of the plate's energy.
 TEST(HubColumns, TurnThePlate) {
   const Scratch scratch;
   const io::CsvTable motion = motion_of(
@@ -94,7 +97,8 @@ formula = "0.4*(3*t - sin(3*t))"
   }
 }
 
-// A spring and a damper on a mass: their laws, from the positions and energies of the table.
+// A mass on a spring and a damper. Reference: their laws, evaluated with the positions of the
+// table.
 TEST(SpringColumns, FollowTheirLaws) {
   const Scratch scratch;
   const io::CsvTable motion = motion_of(scratch, R"toml(
@@ -124,7 +128,7 @@ torsion_stiffness = 1.0
              moment = motion.numbers("mount.moment"), energy = motion.numbers("mount.energy"),
              power = motion.numbers("mount.power");
   for (size_t i = 1; i + 1 < t.size(); ++i) {
-    const double rate = (y[i + 1] - y[i - 1]) / 2e-3;  // its error: h²/6 y''' = 3e-6
+    const double rate = (y[i + 1] - y[i - 1]) / 2e-3;  // error: h²/6 y''' = 3e-6
     EXPECT_NEAR(fx[i], -50 * (x[i] - 0.1), 1e-10);
     EXPECT_NEAR(fy[i], -80 * y[i] - 3 * rate, 2e-4);
     EXPECT_NEAR(moment[i], 0, 1e-10);

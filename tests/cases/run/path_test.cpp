@@ -1,5 +1,5 @@
-// The path joint: a bead on a wire against the pendulum it is, a cam and its follower against
-// closed forms, and what is refused.
+// Shows that the path joint is correct: a bead on a wire against a pendulum, a cam and its follower
+// against closed forms; and that wrong input is refused.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +26,7 @@ until = 6.283185307179586
 formula = "1.5*sin(t)"
 )toml";
 
-/// A bead on a wire, `at` a place of it.
+/// Returns a bead on a wire that starts at the point `at` of the wire.
 std::string bead(const std::string& wire, const Vec2& at, double step, double end) {
   return R"toml(
 title = "A bead on a wire"
@@ -59,7 +59,8 @@ io::CsvTable motion_of(const Scratch& scratch, const std::string& text) {
   return io::read_csv(folder + "/motion.csv");
 }
 
-/// Angle of a pendulum of length 1.5 m from the x axis, released at rest at 0.3: Runge-Kutta.
+/// Returns the angle from the x axis of a pendulum of length 1.5 m that is released at 0.3 rad
+/// (Runge-Kutta).
 double pendulum(double end) {
   std::array<double, 2> x{0.3, 0};
   const auto rate = [](const std::array<double, 2>& x) {
@@ -78,7 +79,8 @@ double pendulum(double end) {
   return x[0];
 }
 
-// The curve is closed, the bead crosses where its parameter begins; order 2 in the step.
+// The curve is closed, and the bead passes the point where its parameter begins. The error is of
+// order 2 in the step.
 TEST(Path, BeadOnACircleIsAPendulum) {
   const Scratch scratch;
   const double end = 1.2, exact = pendulum(end);
@@ -96,7 +98,8 @@ TEST(Path, BeadOnACircleIsAPendulum) {
   EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2, 0.15);
 }
 
-// y = x²/2: the energy g y + (1 + x²) ẋ²/2 of the motion, with ẋ from differences of positions.
+// y = x²/2: the energy g y + (1 + x²) ẋ²/2 is constant; ẋ is computed from differences of
+// positions.
 TEST(Path, BeadOnAParabolaKeepsItsEnergy) {
   const Scratch scratch;
   const io::CsvTable motion = motion_of(scratch, bead(R"toml(
@@ -121,8 +124,8 @@ formula = "(t - 2)^2/2"
   EXPECT_NEAR(low, -1, 1e-4);
 }
 
-/// A plate hangs by the middle of its root from a board that stands: a joint keeps that point
-/// 1.3 m away from (-1.2, 0.5), where it is at the start.
+/// Returns a plate that hangs by the middle of its root from a fixed board. A joint keeps this
+/// point at its initial distance of 1.3 m from (-1.2, 0.5).
 std::string hanging_plate(const std::string& joint) {
   return R"toml(
 title = "A plate on a wire"
@@ -160,8 +163,8 @@ point_b = [0.0, 0.0]
          "[[observe]]\nname = \"tip\"\nbody = \"strip\"\npoint = [0.4, 0.0]\n";
 }
 
-/// Points of the arc, 5 rad of it, as a CSV and as the rows of a table: 401, whose smooth curve is
-/// off by h⁴/384 R = 1e-10 m inside and by less than 1e-6 m at its ends.
+/// Returns 401 points of an arc of 5 rad as a CSV file and as rows of a table. Their smooth curve
+/// deviates from the arc by h⁴/384 R = 1e-10 m inside and by less than 1e-6 m at its ends.
 std::array<std::string, 2> arc_points() {
   std::array<std::string, 2> out = {"s,x\n", "["};
   char line[80];
@@ -177,8 +180,9 @@ std::array<std::string, 2> arc_points() {
   return out;
 }
 
-// A curve by points, one coordinate from a CSV and one from a table, for a point of a plate: the
-// arc of a circle does what a massless rod to its centre does, forces included.
+// A curve given by points (one coordinate from a CSV file, one from a table) guides a point of a
+// plate. The arc of a circle must have the effect of a massless rod to its centre, including the
+// forces.
 TEST(Path, OfPointsLeadsAPlateAsARodDoes) {
   const Scratch scratch;
   const auto [csv, table] = arc_points();
@@ -205,7 +209,7 @@ TEST(Path, OfPointsLeadsAPlateAsARodDoes) {
   }
 }
 
-/// An eccentric disc turns by 3 t; its follower is led along y.
+/// Returns an eccentric disc that is turned by 3 t, with a follower guided along y.
 std::string cam(const std::string& change = "") {
   return R"toml(
 title = "A cam"
@@ -258,7 +262,7 @@ y = "y"
 )toml" + change;
 }
 
-// y = ε sin θ + sqrt(r² - ε² cos² θ); the motor lifts and accelerates the follower.
+// Reference: y = ε sin θ + sqrt(r² - ε² cos² θ); the motor lifts and accelerates the follower.
 TEST(Path, CamLiftsItsFollower) {
   const Scratch scratch;
   const io::CsvTable motion = motion_of(scratch, cam());
@@ -270,7 +274,7 @@ TEST(Path, CamLiftsItsFollower) {
   };
   for (size_t i = 0; i < t.size(); ++i) {
     EXPECT_NEAR(y[i], lift(t[i]), 1e-9) << t[i];
-    if (i < 60) continue;  // accelerations settle
+    if (i < 60) continue;  // accelerations have a transient at the start
     const double rate = (lift(t[i] + 1e-4) - lift(t[i] - 1e-4)) / 2e-4,
                  acceleration = (lift(t[i] + 1e-4) - 2 * lift(t[i]) + lift(t[i] - 1e-4)) / 1e-8;
     EXPECT_NEAR(force[i], 0.7 * (kG + acceleration), 2e-3) << t[i];
@@ -278,7 +282,7 @@ TEST(Path, CamLiftsItsFollower) {
   }
 }
 
-// An open curve: beyond its end there is nothing to run along.
+// The curve is open; the run ends where the bead reaches its end.
 TEST(Path, EndsWhereItsCurveEnds) {
   const Scratch scratch;
   const std::string slope = R"toml(
@@ -305,19 +309,19 @@ TEST(Path, IsRefusedWhereItMakesNoSense) {
     EXPECT_EQ(ended.code, 2) << change;
     return ended.err;
   };
-  const auto says = [&](const std::string& change, const std::string& words) {
+  const auto mentions = [&](const std::string& change, const std::string& words) {
     const std::string said = complaint(change);
     EXPECT_TRUE(contains(said, words)) << said;
   };
-  says("joint.flank.x=turn", "a coordinate of a curve says `until`");
-  says("joint.motor.angle=x", "is a coordinate of a curve (`until`), not of time");
-  says("drive.x.until=6", "its parameter ends at 6.28");
-  says("joint.flank.b=disc", "a joint is between two bodies");
-  says("joint.flank.angle_b=1", "does not look at axes");
-  says("drive.x.until=-1", "the end of a parameter");
-  says("drive.x.formula='0.3*sin(2*t)'", "the curve crosses itself");
-  says("drive.x.formula='0.5*sin(t)'", "the curve has no direction, or a corner");
-  says("drive.x.formula='cos(t)^3'", "the curve has no direction");
+  mentions("joint.flank.x=turn", "a coordinate of a curve needs a drive with `until`");
+  mentions("joint.motor.angle=x", "is a coordinate of a curve (`until`), not a function of time");
+  mentions("drive.x.until=6", "the parameter of `y` ends at 6.28");
+  mentions("joint.flank.b=disc", "are two different bodies");
+  mentions("joint.flank.angle_b=1", "uses no axes");
+  mentions("drive.x.until=-1", "the end of a parameter");
+  mentions("drive.x.formula='0.3*sin(2*t)'", "the curve crosses itself");
+  mentions("drive.x.formula='0.5*sin(t)'", "the curve has no tangent, or a corner");
+  mentions("drive.x.formula='cos(t)^3'", "the curve has no tangent");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Shows that a run builds one mechanism per mesh and one rigid kinematic model, that motions leave
-// the prepared mechanism as it is, and that a prepared case builds nothing that nobody asks for.
+// Shows that a run builds one mechanism per mesh and one rigid kinematic model, that motions do not
+// change the prepared mechanism, and that a prepared case builds only what is needed.
 #include <gtest/gtest.h>
 
 #include "cases/run/compute.h"
@@ -17,7 +17,7 @@ TEST(PreparedCase, HasOneMechanismPerMeshInARunOfTwoCycles) {
                    "cycle.tolerance=0", "cycle.load_difference=0", "optimizer.max_iterations=2",
                    "time.end=0.02", "esl.every=0.01", "verify.cells=1", "design.min_feature=0",
                    "output.vtk=false", "output.plots=false", "output.tolerance=1e-3", "expect="}));
-  ASSERT_TRUE(prepared.scene().judges_on_cells());
+  ASSERT_TRUE(prepared.scene().verifies_on_cells());
   const RunResult result = compute(prepared);
   EXPECT_EQ(result.design.cycles, 2);
   ASSERT_TRUE(result.motions.verified && result.motions.verified_uniform);
@@ -28,7 +28,8 @@ TEST(PreparedCase, HasOneMechanismPerMeshInARunOfTwoCycles) {
   EXPECT_EQ(counts.design_problems, 1);
 }
 
-// A motion of a copy gives what a motion of a mechanism gives that was built for it alone.
+// A motion of a copy of the prepared mechanism equals a motion of a mechanism that was built for it
+// alone.
 TEST(PreparedCase, GivesEveryMotionACopy) {
   const PreparedCase prepared(read("deploying_beam", {"time.end=0.05"})),
       fresh(read("deploying_beam", {"time.end=0.05"}));
@@ -43,7 +44,7 @@ TEST(PreparedCase, BuildsNothingThatNobodyAsksFor) {
   const PreparedCase plate(read("short_beam"));
   EXPECT_EQ(plate.rigid(), nullptr);
   EXPECT_EQ(plate.design_problems().size(), 1u);
-  EXPECT_GT(plate.extent().iterations, 0);
+  EXPECT_GT(plate.resource_estimate().iterations, 0);
   EXPECT_EQ(plate.counts().mechanisms, 0);
   EXPECT_EQ(plate.counts().rigid, 0);
 }

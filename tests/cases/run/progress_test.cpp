@@ -1,4 +1,4 @@
-// What a run says on its way, and what it leaves behind where it fails.
+// Shows that a run reports its progress, and which data about a failure it leaves.
 #include "cases/run/progress.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ TEST(TimeLeft, FollowsFromThePartThatIsDone) {
   EXPECT_EQ(time_left(10, 0.25), ", 30 s left");
   EXPECT_EQ(time_left(3600, 0.5), ", 60 min left");
   EXPECT_EQ(time_left(10, 1), ", 0 s left");
-  EXPECT_EQ(time_left(10, 0), "");     // nothing is known yet
-  EXPECT_EQ(time_left(0.1, 0.5), "");  // too little to tell
+  EXPECT_EQ(time_left(10, 0), "");     // nothing has been done yet
+  EXPECT_EQ(time_left(0.1, 0.5), "");  // too short for an estimate
 }
 
 TEST(FailureOf, KnowsWhatTheErrorKnows) {
@@ -45,21 +45,23 @@ TEST(ProgressLines, SayPhaseAndHowManyOfHowMany) {
   const std::string out = scratch / "out";
   const Ended ended = test::flexmorph(scratch, test::short_run(out, {"output.vtk=false"}));
   EXPECT_TRUE(test::is_done(ended, out));
-  // Of two stages together.
+  // The number of iterations covers both stages.
   EXPECT_TRUE(contains(ended.out, "design of plate, cycle 1: iteration 1 of at most 6"));
-  EXPECT_LT(test::lines_of(ended.out).size(), 20u);  // no terminal: a line now and then
+  // without a terminal only few lines are printed
+  EXPECT_LT(test::lines_of(ended.out).size(), 20u);
   const json run = test::run_json(out);
   EXPECT_FALSE(run.contains("failure"));
   EXPECT_EQ(run["results"][0]["scaled_objective"],
             "natural logarithm of the summed compliance [J]");
 }
 
-// A path that cannot get over its limit point with so few equilibria, a motion of steps that are
-// far too long for what hits it: both are refusals for who reads run.json.
+// Two numerical failures: a path that cannot pass its limit point within the given number of
+// equilibria, and a motion whose steps are far too long for its loading. Both are described by data
+// in run.json.
 TEST(Failures, AreDataInRunJson) {
   struct Row {
     Words words;
-    const char *phase, *place;
+    const char *phase, *location;
   };
   for (const Row& row : std::vector<Row>{
            {{"beam_heated_held", "--set", "static.max_steps=5"}, "statics", "load_factor"},
@@ -78,7 +80,7 @@ TEST(Failures, AreDataInRunJson) {
     ASSERT_TRUE(run.contains("failure"));
     const json& failure = run["failure"];
     EXPECT_EQ(failure["phase"], row.phase);
-    EXPECT_TRUE(failure[row.place].is_number()) << failure;
+    EXPECT_TRUE(failure[row.location].is_number()) << failure;
     EXPECT_EQ(failure["kind"], "numerical");
     EXPECT_TRUE(contains(ended.err, failure["cause"].get<std::string>()));
   }

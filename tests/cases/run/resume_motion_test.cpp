@@ -1,5 +1,6 @@
-// Motions that are killed or interrupted go on from their checkpoint, and the run comes to what it
-// comes to undisturbed, byte for byte: motions alone, of cycles, and those that judge a design.
+// Shows that motions which are killed or interrupted continue from their checkpoint, and that the
+// run then has the results of an undisturbed run byte for byte: motions alone, motions of cycles,
+// and motions that assess a design.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -11,7 +12,8 @@
 namespace flexmorph::test {
 namespace {
 
-/// Has the motion begun that has this checkpoint? Its name is in the list of the folder then.
+/// Waits until the motion with this checkpoint has begun; the name of the checkpoint is then in the
+/// list of the folder. False if the run ended before.
 bool has_begun(const std::string& folder, const std::string& checkpoint, const ChildProgram& run) {
   return eventually(run, [&] {
     const Words names = lines_of(contents_of(folder + "/.flexmorph"));
@@ -23,8 +25,8 @@ struct Disturbed {
   const char* name;
   std::string path;
   Words changes;
-  std::string checkpoint;  ///< of the motion that is disturbed
-  int signal;              ///< killed when the checkpoint is there, interrupted before
+  std::string checkpoint;  ///< Checkpoint of the disturbed motion.
+  int signal;              ///< SIGKILL is sent when the checkpoint exists, an interruption before.
 };
 void PrintTo(const Disturbed& d, std::ostream* out) { *out << d.name; }
 
@@ -34,9 +36,9 @@ TEST_P(ResumedMotion, IsAsUndisturbed) {
   const Disturbed& d = GetParam();
   const Scratch scratch;
   const std::string whole = scratch / "whole", folder = scratch / "out";
-  const Ended undisturbed = flexmorph(scratch, words_of(d.path, whole, d.changes));
+  const Ended undisturbed = flexmorph(scratch, text_of(d.path, whole, d.changes));
   ASSERT_TRUE(is_done(undisturbed, whole));
-  testing::ChildProgram run = start(scratch, words_of(d.path, folder, d.changes));
+  testing::ChildProgram run = start(scratch, text_of(d.path, folder, d.changes));
   const std::string checkpoint = folder + "/" + d.checkpoint;
   bool caught = has_begun(folder, d.checkpoint, run);
   ASSERT_TRUE(caught);
@@ -48,11 +50,11 @@ TEST_P(ResumedMotion, IsAsUndisturbed) {
   }
   EXPECT_EQ(run.end().code, d.signal == SIGKILL ? -1 : 4);
   expect_readable(folder);
-  Words words = words_of(d.path, folder, d.changes, true);
+  Words words = text_of(d.path, folder, d.changes, true);
   std::erase(words, "--quiet");
   const Ended ended = flexmorph(scratch, words);
   EXPECT_EQ(ended.code, undisturbed.code) << ended.err;
-  EXPECT_NE(ended.out.find(": goes on at t = "), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("resumes at t = "), std::string::npos) << ended.out;
   expect_same(lasting(folder), lasting(whole));
   EXPECT_FALSE(fs::exists(checkpoint));
 }
@@ -71,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
                   {"time.step=1e-4", "cycle.max_cycles=2", "optimizer.max_iterations=2"},
                   "motion_2.checkpoint",
                   SIGTERM},
-        Disturbed{"judge",
+        Disturbed{"outline_verification",
                   FLEXMORPH_SHORT_CASE,
                   {"time.step=2e-4", "optimizer.max_iterations=1", "design.cell=0.01",
                    "design.min_thickness=0.01", "esl.every=0.02"},
@@ -79,13 +81,13 @@ INSTANTIATE_TEST_SUITE_P(
                   SIGTERM}),
     [](const auto& info) { return std::string(info.param.name); });
 
-// What a checkpoint cannot be used for is said, and the motion begins anew.
+// An unusable checkpoint is reported, and the motion starts from the beginning.
 TEST(ResumeMotion, BeginsAnewWithADamagedCheckpoint) {
   const Scratch scratch;
   const std::string whole = scratch / "whole", folder = scratch / "out";
   const Words changes = {"time.end=0.6"};
-  ASSERT_EQ(flexmorph(scratch, words_of("deploying_plate", whole, changes)).code, 0);
-  testing::ChildProgram run = start(scratch, words_of("deploying_plate", folder, changes));
+  ASSERT_EQ(flexmorph(scratch, text_of("deploying_plate", whole, changes)).code, 0);
+  testing::ChildProgram run = start(scratch, text_of("deploying_plate", folder, changes));
   ASSERT_TRUE(has_begun(folder, "motion.checkpoint", run));
   run.send(SIGTERM);
   ASSERT_EQ(run.end().code, 4);
@@ -93,12 +95,11 @@ TEST(ResumeMotion, BeginsAnewWithADamagedCheckpoint) {
   std::string text = contents_of(path);
   text[text.size() / 2] = static_cast<char>(text[text.size() / 2] ^ 4);
   std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
-  Words words = words_of("deploying_plate", folder, changes, true);
+  Words words = text_of("deploying_plate", folder, changes, true);
   std::erase(words, "--quiet");
   const Ended ended = flexmorph(scratch, words);
   EXPECT_EQ(ended.code, 0);
-  EXPECT_NE(ended.out.find("motion: begins anew, motion.checkpoint cannot be used: it is damaged"),
-            std::string::npos)
+  EXPECT_NE(ended.out.find("motion.checkpoint cannot be used: it is damaged"), std::string::npos)
       << ended.out;
   expect_same(lasting(folder), lasting(whole));
 }

@@ -1,4 +1,4 @@
-// Runs that are killed and resumed come to what a run comes to that nobody disturbed, byte for
+// Shows that runs which are killed and resumed have the results of an undisturbed run byte for
 // byte.
 #include <chrono>
 #include <csignal>
@@ -11,12 +11,12 @@
 namespace flexmorph::test {
 namespace {
 
-/// Waits until a history has so many rows; false when the run ended before.
+/// Waits until a history has more than n lines; false if the run ended before.
 bool has_rows(const std::string& folder, size_t n, const ChildProgram& run) {
   return eventually(run, [&] { return lines_of(contents_of(folder + "/history.csv")).size() > n; });
 }
 
-/// The short case on coarse cells.
+/// Returns changes for the short case on coarse cells.
 Words coarse(int iterations) {
   return {"optimizer.max_iterations=" + std::to_string(iterations), "design.cell=0.01",
           "design.min_thickness=0.01", "esl.every=0.02"};
@@ -26,8 +26,9 @@ struct Design {
   const char* name;
   std::string path;
   Words changes;
-  std::vector<size_t> rows;  ///< after which it is killed, in turn
-  size_t all;                ///< of its history
+  /// Numbers of rows after which the run is killed, one after the other.
+  std::vector<size_t> rows;
+  size_t all;  ///< Number of rows of the complete history.
 };
 void PrintTo(const Design& d, std::ostream* out) { *out << d.name; }
 
@@ -37,15 +38,15 @@ TEST_P(Resumed, IsAsUndisturbed) {
   const Design& d = GetParam();
   const Scratch scratch;
   const std::string whole = scratch / "whole", folder = scratch / "out";
-  const Ended undisturbed = flexmorph(scratch, words_of(d.path, whole, d.changes));
+  const Ended undisturbed = flexmorph(scratch, text_of(d.path, whole, d.changes));
   ASSERT_TRUE(is_done(undisturbed, whole));
   EXPECT_FALSE(fs::exists(whole + "/evaluations.log"));
   for (const size_t rows : d.rows) {
-    testing::ChildProgram run = start(scratch, words_of(d.path, folder, d.changes, true));
+    testing::ChildProgram run = start(scratch, text_of(d.path, folder, d.changes, true));
     if (has_rows(folder, rows, run)) run.send(SIGKILL);
     run.end();
   }
-  const Ended ended = flexmorph(scratch, words_of(d.path, folder, d.changes, true));
+  const Ended ended = flexmorph(scratch, text_of(d.path, folder, d.changes, true));
   EXPECT_EQ(ended.code, undisturbed.code) << ended.err;
   EXPECT_EQ(io::read_csv(folder + "/history.csv").n_rows(), d.all);
   expect_same(lasting(folder), lasting(whole));
@@ -66,18 +67,19 @@ INSTANTIATE_TEST_SUITE_P(
                              40}),
     [](const auto& info) { return std::string(info.param.name); });
 
-// Interrupted, a run is whole as far as it went; that it goes on from there changes nothing.
+// An interrupted run leaves complete files of what was computed; resuming it does not change the
+// result.
 TEST(Resume, GoesOnAfterAnInterruption) {
   const Scratch scratch;
   const std::string whole = scratch / "whole", folder = scratch / "out";
   const Words changes = coarse(30);
-  flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, whole, changes));
-  testing::ChildProgram run = start(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, changes));
+  flexmorph(scratch, text_of(FLEXMORPH_SHORT_CASE, whole, changes));
+  testing::ChildProgram run = start(scratch, text_of(FLEXMORPH_SHORT_CASE, folder, changes));
   ASSERT_TRUE(has_rows(folder, 4, run));
   run.send(SIGTERM);
   ASSERT_EQ(run.end().code, 4);
   EXPECT_TRUE(fs::exists(folder + "/components.csv"));
-  flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, changes, true));
+  flexmorph(scratch, text_of(FLEXMORPH_SHORT_CASE, folder, changes, true));
   expect_same(lasting(folder), lasting(whole));
 }
 
@@ -85,28 +87,28 @@ TEST(Resume, RefusesAnotherCase) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
   testing::ChildProgram run =
-      start(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {"optimizer.max_iterations=300"}));
+      start(scratch, text_of(FLEXMORPH_SHORT_CASE, folder, {"optimizer.max_iterations=300"}));
   ASSERT_TRUE(has_rows(folder, 2, run));
   run.send(SIGKILL);
   run.end();
   const std::string before = contents_of(folder + "/history.csv");
   const Ended ended = flexmorph(
-      scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {"optimizer.max_iterations=301"}, true));
+      scratch, text_of(FLEXMORPH_SHORT_CASE, folder, {"optimizer.max_iterations=301"}, true));
   EXPECT_EQ(ended.code, 2);
   EXPECT_NE(ended.err.find("a run of another case"), std::string::npos) << ended.err;
   EXPECT_EQ(contents_of(folder + "/history.csv"), before);
 }
 
-// Without its log a run solves every iteration again, and the rows of before are written anew.
+// Without its log a run solves every iteration again, and rewrites the earlier rows.
 TEST(Resume, HasEveryRowOnceWithoutItsLog) {
   const Scratch scratch;
   const std::string whole = scratch / "whole", folder = scratch / "out";
-  const int code = flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, whole, {})).code;
+  const int code = flexmorph(scratch, text_of(FLEXMORPH_SHORT_CASE, whole, {})).code;
   fs::copy(whole, folder, fs::copy_options::recursive);
   json run = run_json(folder);
   run["status"] = "running";
   io::write_file(folder + "/run.json", run.dump());
-  EXPECT_EQ(flexmorph(scratch, words_of(FLEXMORPH_SHORT_CASE, folder, {}, true)).code, code);
+  EXPECT_EQ(flexmorph(scratch, text_of(FLEXMORPH_SHORT_CASE, folder, {}, true)).code, code);
   EXPECT_EQ(io::read_csv(folder + "/history.csv").n_rows(), 6u);
   expect_same(lasting(folder), lasting(whole));
 }
@@ -114,12 +116,12 @@ TEST(Resume, HasEveryRowOnceWithoutItsLog) {
 TEST(Resume, LeavesWhatIsDone) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
-  const Words words = words_of(FLEXMORPH_SHORT_CASE, folder, {}, true);
+  const Words words = text_of(FLEXMORPH_SHORT_CASE, folder, {}, true);
   const int code = flexmorph(scratch, words).code;
   const std::string before = contents_of(folder + "/run.json");
   const Ended ended = flexmorph(scratch, words);
   EXPECT_EQ(ended.code, code) << ended.err;
-  EXPECT_NE(ended.out.find("finished before"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("The run is complete already"), std::string::npos) << ended.out;
   EXPECT_EQ(contents_of(folder + "/run.json"), before);
 }
 

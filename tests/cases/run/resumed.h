@@ -12,12 +12,13 @@
 #include "tests/cases/program.h"
 #include "tests/cases/run_json.h"
 
-/// Runs that are disturbed and resumed, beside those that are not.
+/// Functions that compare disturbed and resumed runs with undisturbed ones.
 namespace flexmorph::test {
 
 namespace fs = std::filesystem;
 
-/// Files of a folder by their path in it: without times, and what says who wrote them.
+/// Returns the files of a folder by their path in it, without run times and without data about the
+/// process that wrote them.
 inline std::map<std::string, std::string> lasting(const std::string& folder) {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -42,7 +43,8 @@ inline std::map<std::string, std::string> lasting(const std::string& folder) {
       const io::CsvTable table = io::read_csv(entry.path().string());
       text.clear();
       for (size_t c = 0; c < table.columns.size(); ++c) {
-        // As in run.json: what is known from before is not factored again.
+        // Factorizations are left out here and in run.json, because archived evaluations are not
+        // factored again.
         if (table.columns[c].find("seconds") != std::string::npos ||
             table.columns[c] == "factorizations")
           continue;
@@ -55,8 +57,8 @@ inline std::map<std::string, std::string> lasting(const std::string& folder) {
   return out;
 }
 
-inline Words words_of(const std::string& path, const std::string& folder, const Words& changes,
-                      bool resume = false) {
+inline Words text_of(const std::string& path, const std::string& folder, const Words& changes,
+                     bool resume = false) {
   Words out = {"run", path, "-o", folder, "--quiet", "--set", "expect="};
   for (const std::string& change : changes) out.insert(out.end(), {"--set", change});
   if (resume) out.emplace_back("--resume");
@@ -69,8 +71,8 @@ inline void expect_same(const std::map<std::string, std::string>& a,
   for (const auto& [name, text] : b) EXPECT_TRUE(a.contains(name)) << name;
 }
 
-/// What cannot be read of a run, at any moment: texts end with whole rows, indices name frames that
-/// are there. Files that are replaced or removed meanwhile are looked at the next time.
+/// Returns the files of a run that are incomplete. At any moment, texts must end with a complete
+/// row and indices must name existing frames. Files that are being replaced or removed are skipped.
 inline Words unreadable(const std::string& folder) {
   Words out;
   std::error_code code;
@@ -82,7 +84,7 @@ inline Words unreadable(const std::string& folder) {
     const std::string ending = path.extension().string();
     if (ending == ".tmp" || !fs::is_regular_file(path, code)) continue;
     const std::string text = contents_of(path.string());
-    if (text.empty()) continue;  // begun, or gone
+    if (text.empty()) continue;  // just created, or removed
     bool good = true;
     if (ending == ".json") good = json::accept(text);
     if (ending == ".vti" || ending == ".vtp" || ending == ".vtu")
@@ -90,7 +92,7 @@ inline Words unreadable(const std::string& folder) {
     if (ending == ".csv") {
       good = text.back() == '\n';
       try {
-        io::read_csv(path.string());  // rows as long as the header
+        io::read_csv(path.string());  // throws if a row is not as long as the header
       } catch (const flexmorph::Error&) {
         good = false;
       }

@@ -1,5 +1,6 @@
-// Run folders under attack: second runs, kills, hang-ups, full disks, removed folders, names that
-// lead out of them. What a user has on the disk stays, and what a run wrote is whole.
+// Shows that run folders survive second runs, killed processes, closed terminals, full disks,
+// removed folders and names that lead out of them: files of the user stay, and files of a run are
+// complete.
 #include <csignal>
 #include <filesystem>
 
@@ -18,7 +19,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// A pendulum of 1 s in `steps` steps.
+/// Returns a pendulum that is simulated for 1 s with the given step.
 std::string pendulum(const std::string& steps, const std::string& more = "") {
   return "gravity = [0.0, -9.81]\n[time]\nend = 1.0\nstep = " + steps +
          "\n[[rigid_body]]\nname = \"rod\"\nmass = 1.0\nsize = [1.0, 0.1]\n"
@@ -27,7 +28,7 @@ std::string pendulum(const std::string& steps, const std::string& more = "") {
          more;
 }
 const char* const kQuick = "1e-2";
-const char* const kLong = "1e-6";  // for who is killed
+const char* const kLong = "1e-6";  // a long run, to be killed
 
 /// Waits until the table of steps has begun.
 bool moves(const ChildProgram& run, const std::string& folder) {
@@ -40,11 +41,11 @@ TEST(RunFolders, BelongToTheRunThatLives) {
                     quick = scratch.write("quick.toml", pendulum(kQuick));
   testing::ChildProgram child = start(scratch, {"run", slow, "-o", folder, "--quiet"});
   ASSERT_TRUE(moves(child, folder));
-  const Scratch other_words;
+  const Scratch other_text;
   const std::string before = contents_of(folder + "/run.json");
   const fs::path words = fs::path(scratch / "second");
   fs::create_directories(words);
-  // Another process; its output goes to other files.
+  // The second run is another process with output files of its own.
   const Ended refused =
       ChildProgram({FLEXMORPH_PROGRAM, "run", quick, "-o", folder, "--quiet"}, words.string())
           .end();
@@ -54,18 +55,20 @@ TEST(RunFolders, BelongToTheRunThatLives) {
   child.send(SIGKILL);
   child.end();
 
-  // Killed, it holds nothing up: every file is whole, and makes room.
+  // A killed run does not block its folder: all its files are complete, and the next run moves them
+  // away.
   EXPECT_EQ(run_json(folder)["status"], "running");
   const size_t columns = io::read_csv(folder + "/motion.csv").columns.size();
   EXPECT_GT(columns, 5u);
   const Ended ended = flexmorph(scratch, {"run", quick, "-o", folder});
   EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_TRUE(contains(ended.out, "the run that was there is now " + folder + ".previous"));
+  EXPECT_TRUE(contains(ended.out, "was moved to " + folder + ".previous"));
   EXPECT_EQ(run_json(folder)["status"], "done");
   EXPECT_EQ(run_json(folder + ".previous")["status"], "running");
 }
 
-// Tables of paths grow as those of motions do, and who reads a run tells the living from the dead.
+// The table of a path grows during the run, as the table of a motion does, and a reader
+// distinguishes running from killed runs.
 TEST(RunFolders, OfTheDeadAreNotThoseOfTheLiving) {
   const Scratch scratch;
   const auto status = [&] {
@@ -84,7 +87,7 @@ TEST(RunFolders, OfTheDeadAreNotThoseOfTheLiving) {
   EXPECT_EQ(status(), "killed");
   const io::CsvTable table = io::read_csv(path);
   ASSERT_GT(table.n_rows(), 3u);
-  // As the paths of the shipped case begin, and go.
+  // The first rows are those of the shipped case.
   EXPECT_EQ(table.columns.front(), "step");
   EXPECT_EQ(table.columns.back(), "iterations");
   EXPECT_EQ(table.numbers("step")[2], 2);
@@ -130,7 +133,7 @@ TEST(RunFolders, RunAgainByThemselves) {
   EXPECT_GT(contents_of(scratch / "again/motion.csv").size(), 1000u);
 }
 
-// Of a domain that is called so, loads/NAME.csv and plots/start_NAME.svg were written.
+// Such a domain name would be part of the paths loads/NAME.csv and plots/start_NAME.svg.
 TEST(RunFolders, AreNotLeftByNames) {
   const Scratch scratch;
   scratch.write("precious.csv", "years of work");
@@ -138,13 +141,13 @@ TEST(RunFolders, AreNotLeftByNames) {
     const Ended ended = flexmorph(scratch, {"run", "short_beam", "-o", scratch / "out/run", "--set",
                                             "domain.name='" + name + "'"});
     EXPECT_EQ(ended.code, 2);
-    EXPECT_TRUE(contains(ended.err, "64 at most")) << ended.err;
+    EXPECT_TRUE(contains(ended.err, "at most 64")) << ended.err;
     EXPECT_FALSE(fs::exists(scratch / "out"));
   }
   EXPECT_EQ(contents_of(scratch / "precious.csv"), "years of work");
 }
 
-// A terminal that is closed ends a run as SIGTERM does.
+// A closed terminal (SIGHUP) ends a run as SIGTERM does.
 TEST(RunFolders, AreFinishedWhenTheTerminalCloses) {
   for (const int signal : {SIGHUP, SIGTERM}) {
     const Scratch scratch;
@@ -158,18 +161,18 @@ TEST(RunFolders, AreFinishedWhenTheTerminalCloses) {
   }
 }
 
-// Nobody reads what it says: it runs on.
+// A run whose output pipe is closed continues to its end.
 TEST(RunFolders, AreFinishedWhenNobodyListens) {
   const Scratch scratch;
   const std::string folder = scratch / "out", path = scratch.write("case.toml", pendulum(kQuick));
   const std::string command =
       std::string(FLEXMORPH_PROGRAM) + " run " + path + " -o " + folder + " | true";
-  // The shell waits for both.
+  // The shell waits for both processes.
   EXPECT_EQ(testing::run_shell(command).code, 0);
   EXPECT_EQ(run_json(folder)["status"], "done");
 }
 
-// Files of 20 kB at most, as on a disk that fills up: the table ends with a whole row.
+// The size of files is limited to 20 kB, as on a full disk: the table ends with a complete row.
 TEST(RunFolders, OnAFullDiskHoldWholeRows) {
   if (kThreadSanitized) GTEST_SKIP() << "the sanitizer has files of its own";
   const Scratch scratch;
@@ -183,7 +186,8 @@ TEST(RunFolders, OnAFullDiskHoldWholeRows) {
   const std::string text = contents_of(folder + "/motion.csv");
   EXPECT_GT(text.size(), 15000u);
   EXPECT_EQ(text.back(), '\n');
-  EXPECT_GT(io::read_csv(folder + "/motion.csv").n_rows(), 50u);  // refuses ragged ones
+  // read_csv() refuses incomplete rows
+  EXPECT_GT(io::read_csv(folder + "/motion.csv").n_rows(), 50u);
   EXPECT_EQ(run_json(folder)["status"], "failed");
 }
 
@@ -196,7 +200,7 @@ TEST(RunFolders, ThatAreRemovedEndTheRun) {
   child.send(SIGTERM);
   const Ended ended = child.end();
   EXPECT_EQ(ended.code, 3);
-  EXPECT_TRUE(contains(ended.err, "was removed while it was filled")) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "was removed during the run")) << ended.err;
   EXPECT_FALSE(fs::exists(folder));
 }
 

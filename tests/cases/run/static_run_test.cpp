@@ -1,5 +1,5 @@
-// Load cases of plates at rest, as the program runs them: a bar under tension against its closed
-// form, loads and supports where there is no material.
+// Shows that load cases of static plates are correct: a bar under tension against its closed form,
+// and loads and supports at locations without material.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 namespace flexmorph::test {
 namespace {
 
-/// A bar of 1 m x 0.1 m x 0.01 m, the lower half of a domain whose upper half is void. Without
-/// Poisson's ratio it is under uniform tension.
+/// A bar of 1 m x 0.1 m x 0.01 m is the lower half of a domain whose upper half is void. With
+/// Poisson's ratio 0 it is under uniform tension.
 constexpr const char* kBar = R"(title = "A bar at rest"
 [domain]
 name = "bar"
@@ -51,8 +51,8 @@ max_iterations = 0
 )";
 constexpr double kModulus = 2e11, kSection = 1e-3;  // [Pa], [m²]
 
-// Strain energy F² L / (2 E A), displacement F L / (E A), stress F / A. The loads' edge lies beside
-// the void for one half: the whole force acts on the other one.
+// Reference: strain energy F² L / (2 E A), displacement F L / (E A), stress F / A. Half of the
+// loaded edge lies at the void, therefore the whole force acts on the other half.
 TEST(StaticRun, ABarIsStretchedAsItsClosedFormSays) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
@@ -72,15 +72,15 @@ TEST(StaticRun, ABarIsStretchedAsItsClosedFormSays) {
     EXPECT_NEAR(load["strain_energy"].get<double>(), energy, 1e-6 * energy);
     EXPECT_NEAR(load["largest_displacement"].get<double>(), displacement, 1e-6 * displacement);
     EXPECT_NEAR(load["largest_stress"].get<double>(), stress, 1e-6 * stress);
-    // The void beside the bar has a millionth of its stiffness.
+    // The stiffness of the void next to the bar is a millionth of that of the bar.
     EXPECT_NEAR(load["compliance"].get<double>(), 2 * energy, 1e-5 * energy);
     for (const char* column : {"strain_energy", "largest_displacement", "largest_stress"})
       EXPECT_EQ(table.numbers(column)[l], load[column].get<double>()) << column;
   }
 }
 
-// A bar that ends in the middle of the domain carries nothing: the outline has no numbers, and the
-// table has those of the cells.
+// A bar that ends in the middle of the domain carries no load: there are no numbers of the outline,
+// and the table contains those of the cells.
 TEST(StaticRun, NumbersOfCellsAreSaidToBe) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
@@ -92,7 +92,7 @@ TEST(StaticRun, NumbersOfCellsAreSaidToBe) {
                              "X0,Y0,half_length,angle,c1,c2,c3\n0.2,0.05,0.2,0,0.03,0.03,0.03\n") +
                "'"});
   EXPECT_EQ(ended.code, 5) << ended.err;
-  EXPECT_NE(ended.err.find("no material joins"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("no material connects"), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("100 % of load 'pull' acts on void"), std::string::npos) << ended.err;
   for (const json& load : run_json(folder)["results"][0]["load_cases"]) {
     EXPECT_EQ(load["source"], "cells");
@@ -101,7 +101,7 @@ TEST(StaticRun, NumbersOfCellsAreSaidToBe) {
   }
 }
 
-// A bar in the lower half of the domain carries the force of the lower half of the edge only.
+// A bar in the lower half of the domain carries only the force of the lower half of the edge.
 TEST(StaticRun, PartOfALoadOnVoidIsNamed) {
   const Scratch scratch;
   const std::string start = scratch.write(
@@ -111,27 +111,27 @@ TEST(StaticRun, PartOfALoadOnVoidIsNamed) {
   Ended ended = run(scratch, path, scratch / "out", changes);
   EXPECT_EQ(ended.code, 5) << ended.err;
   EXPECT_NE(ended.err.find("of load 'pull' acts on void"), std::string::npos) << ended.err;
-  // Where the material is, all of it is carried.
+  // If the load acts only on the material, it is carried completely.
   Words on_bar = changes;
   for (const char* load : {"0", "1"}) {
-    const std::string place = "load." + std::string(load) + ".force.0.";
-    on_bar.insert(on_bar.end(), {place + "edge=", place + "box=[1.0, 0.0, 1.0, 0.1]"});
+    const std::string location = "load." + std::string(load) + ".force.0.";
+    on_bar.insert(on_bar.end(), {location + "edge=", location + "box=[1.0, 0.0, 1.0, 0.1]"});
   }
   ended = run(scratch, path, scratch / "on_bar", on_bar);
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(ended.err.find("acts on void"), std::string::npos) << ended.err;
 }
 
-// A place without a node that can be material is refused before the run: in a void region as
-// outside of a polygon.
-TEST(StaticRun, PlacesInTheVoidAreRefused) {
+// A location without a node that can have material, in a void region or outside of a polygon, is
+// refused before the run.
+TEST(StaticRun, LocationsInTheVoidAreRefused) {
   const Scratch scratch;
   const std::string path = scratch.write("bar.toml", kBar), folder = scratch / "out";
-  for (const std::string& place : Words{"point=[0.5, 0.18]", "box=[0.3, 0.15, 0.6, 0.2]"}) {
+  for (const std::string& location : Words{"point=[0.5, 0.18]", "box=[0.3, 0.15, 0.6, 0.2]"}) {
     for (const std::string& where : Words{"load.0.force.0.", "support.0."}) {
-      const Ended ended = run(scratch, path, folder, {where + "edge=", where + place});
+      const Ended ended = run(scratch, path, folder, {where + "edge=", where + location});
       EXPECT_EQ(ended.code, 2) << ended.err;
-      EXPECT_NE(ended.err.find(where + place.substr(0, 5)), std::string::npos) << ended.err;
+      EXPECT_NE(ended.err.find(where + location.substr(0, 5)), std::string::npos) << ended.err;
       EXPECT_NE(ended.err.find("no material can be there"), std::string::npos) << ended.err;
       EXPECT_FALSE(std::filesystem::exists(folder));
     }

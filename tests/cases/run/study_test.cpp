@@ -1,5 +1,5 @@
-// Comparisons and sweeps: how values are split and combined, what counts as a peak, data profiles;
-// and both commands on a small case, from the command line.
+// Shows that comparisons and sweeps split and combine values correctly, that peaks and data
+// profiles are counted correctly, and that both commands work on a small case.
 
 #include <gtest/gtest.h>
 
@@ -29,28 +29,32 @@ TEST(Median, IsTheMiddle) {
 }
 
 TEST(ToldApart, NeedsBothMediansOutside) {
-  EXPECT_TRUE(told_apart({1, 2, 3}, {4, 5, 6}));
-  EXPECT_TRUE(told_apart({1, 2, 4.5}, {4, 5, 6}));   // ranges that overlap are no reason yet
-  EXPECT_FALSE(told_apart({1, 2, 3}, {1.5, 5, 6}));  // the median 2 lies within the other range
-  EXPECT_FALSE(told_apart({1.5, 5, 6}, {1, 2, 3}));
-  EXPECT_FALSE(told_apart({2}, {2}));
-  EXPECT_THROW(told_apart({}, {1}), Error);
+  EXPECT_TRUE(distinguishable({1, 2, 3}, {4, 5, 6}));
+  EXPECT_TRUE(distinguishable({1, 2, 4.5}, {4, 5, 6}));  // overlapping ranges are permitted
+  EXPECT_FALSE(
+      distinguishable({1, 2, 3}, {1.5, 5, 6}));  // the median 2 lies within the other range
+  EXPECT_FALSE(distinguishable({1.5, 5, 6}, {1, 2, 3}));
+  EXPECT_FALSE(distinguishable({2}, {2}));
+  EXPECT_THROW(distinguishable({}, {1}), Error);
 }
 
 TEST(Peaks, StandOutOnBothSidesByAShareOfTheBest) {
   const std::vector<double> values = {10, 8, 6, 9, 6.5, 6, 6.05, 6, 7, 7.5, 7.4, 5, 5.5};
   const std::vector<int> one(values.size(), 0);
-  EXPECT_EQ(peaks(values, one, 0.02), 2);  // 9 and 7.5; 6.05 is too low, 5.5 has not fallen
-  EXPECT_EQ(peaks(values, one, 0.3), 1);   // 9 stands out by 3, 7.5 by 1.5 of the best 6
+  // 9 and 7.5; 6.05 is too low, and nothing falls after 5.5
+  EXPECT_EQ(peaks(values, one, 0.02), 2);
+  // 9 stands out by 3; 7.5 stands out by only 1.5, for a best value of 6
+  EXPECT_EQ(peaks(values, one, 0.3), 1);
   EXPECT_EQ(peaks(values, one, 0.6), 0);
   EXPECT_EQ(peaks({}, {}), 0);
-  // A history that falls all the way has none, neither at its begin nor at its end.
+  // A history that decreases all the time has no peak, neither at its beginning nor at its end.
   EXPECT_EQ(peaks(std::vector<double>{9, 5, 3, 2}, std::vector<int>(4, 0)), 0);
-  // The share counts from the best so far, not from the valley before: 2.4 above 2.3 is 10 % of 1.
+  // The required height is a fraction of the best value so far, not of the valley before: 2.4 is
+  // above 2.3 by 10 % of 1.
   const std::vector<double> late = {1, 3, 2.3, 2.4, 2.3, 1};
   EXPECT_EQ(peaks(late, std::vector<int>(6, 0), 0.09), 2);
   EXPECT_EQ(peaks(late, std::vector<int>(6, 0), 0.11), 1);
-  // What is not finite is passed over.
+  // Values that are not finite are skipped.
   const std::vector<double> gaps = {2, std::nan(""), 3, INFINITY, 2};
   EXPECT_EQ(peaks(gaps, std::vector<int>(5, 0)), 1);
 }
@@ -58,8 +62,10 @@ TEST(Peaks, StandOutOnBothSidesByAShareOfTheBest) {
 TEST(Peaks, DoNotReachOverStages) {
   const std::vector<double> values = {6, 7, 7.5, 5, 6};
   EXPECT_EQ(peaks(values, std::vector<int>{0, 0, 0, 0, 0}), 1);
-  EXPECT_EQ(peaks(values, std::vector<int>{0, 0, 1, 1, 1}), 0);  // the fall is a new stage's start
-  EXPECT_EQ(peaks(values, std::vector<int>{0, 0, 0, 1, 1}), 0);  // the fall comes with a stage
+  // the decrease is the start of a new stage
+  EXPECT_EQ(peaks(values, std::vector<int>{0, 0, 1, 1, 1}), 0);
+  // the decrease coincides with a new stage
+  EXPECT_EQ(peaks(values, std::vector<int>{0, 0, 0, 1, 1}), 0);
 }
 
 TEST(BestSoFar, CountsFeasibleRowsOfTheStage) {
@@ -73,7 +79,7 @@ TEST(BestSoFar, CountsFeasibleRowsOfTheStage) {
 }
 
 TEST(DataProfile, CountsProblemsSolvedToATolerance) {
-  // Two solvers, two problems: best values 1 and 10.
+  // Two solvers and two problems; the best values are 1 and 10.
   const std::vector<std::vector<SolveHistory>> runs = {
       {{{1, 2, 3}, {3, 1.04, 1}}, {{5, 9}, {12, 10}}},
       {{{1, 2, 3}, {4, 2, 1.5}}, {{5, 9}, {10.2, 10.2}}},
@@ -120,7 +126,8 @@ TEST(Combinations, AreOfCasesToo) {
   EXPECT_EQ(all[2].case_name, "other/my_arm.toml");
 }
 
-/// A static case on 40 x 20 cells. Features of any size: fillets are most of the time otherwise.
+/// Returns a command for a static case on 40 x 20 cells. min_feature is 0, because fillets would
+/// take most of the time.
 Words small(const std::string& command, const std::string& folder, const Words& more) {
   Words out = {command, "short_beam",          "-o",    folder,
                "--set", "design.cell=0.05",    "--set", "output.design_every=0",
@@ -148,7 +155,7 @@ TEST(Sweep, RunsCollectsAndSkips) {
   const io::CsvTable table = io::read_csv(folder + "/sweep.csv");
   EXPECT_EQ(table.texts("design.min_thickness"), (Words{"0.02", "0.02", "0.03", "0.03"}));
   EXPECT_EQ(table.numbers("iterations"), (std::vector<double>{3, 5, 3, 5}));
-  // How far it is, and what to think of designs that had no time.
+  // Progress is printed, and designs that had too few iterations are called unfinished.
   for (int n = 1; n <= 4; ++n)
     EXPECT_EQ(lines_with(first.out, std::to_string(n) + "/4 "), 1U) << first.out;
   EXPECT_EQ(table.texts("verdict"), Words(4, "unfinished"));
@@ -162,7 +169,7 @@ TEST(Sweep, RunsCollectsAndSkips) {
   EXPECT_EQ(second.code, 0);
   EXPECT_EQ(lines_with(second.out, "finished before"), 4U);
   EXPECT_EQ(lines_with(second.out, "started"), 0U);
-  // Another setting of all of them: nothing is finished.
+  // With another setting for all runs none of them is finished.
   Words other = vary;
   other.insert(other.end(), {"--set", "design.max_volume=0.5"});
   EXPECT_EQ(lines_with(test::flexmorph(scratch, small("sweep", folder, other)).out, "started"), 4U);
@@ -195,7 +202,7 @@ TEST(Sweep, PutsCasesAndDeflectionsOnOnePage) {
     EXPECT_EQ(largest[k], expected);
     EXPECT_NEAR(motion.numbers("plate.length").back(), k < 2 ? 0.56 : 0.55, 1e-12);
   }
-  // A picture of deflections for either case, both thicknesses in each.
+  // There is one plot of deflections per case, with both thicknesses.
   EXPECT_EQ(lines_with(contents_of(folder + "/sweep.svg"), "tip deflection [m]"), 2U);
 }
 
@@ -231,7 +238,7 @@ TEST(Sweep, RefusesABadValueBeforeAnythingIsWritten) {
 TEST(Sweep, KeepsTheOthersWhenOneFails) {
   const Scratch scratch;
   const std::string folder = scratch / "sweep";
-  // A file where a run folder should be: that run cannot start.
+  // A file with the name of a run folder prevents this run from starting.
   std::filesystem::create_directories(folder);
   io::require_study_folder(folder);
   io::write_file(folder + "/max_iterations=3", "in the way");
@@ -254,9 +261,9 @@ TEST(Compare, MakesATableOfOptimizersFromTheSameStarts) {
   EXPECT_EQ(table.texts("run"), (Words{"mma_1", "mma_2", "ipopt_1", "ipopt_2"}));
   for (const double solves : table.numbers("state_solves")) {
     EXPECT_GE(solves, 8);
-    EXPECT_LE(solves, 20);  // a line search is finished
+    EXPECT_LE(solves, 20);  // a line search is completed
   }
-  // The first start is that of the case, the second one the same for both optimizers.
+  // The first start is that of the case; the second one is equal for both optimizers.
   const auto lines_of_start = [&](const std::string& run) {
     Words out;
     for (const std::string& line : test::lines_of(contents_of(folder + "/" + run + "/case.toml")))
@@ -267,27 +274,27 @@ TEST(Compare, MakesATableOfOptimizersFromTheSameStarts) {
   EXPECT_EQ(lines_of_start("mma_2"), (Words{"jitter = 0.1", "seed = 1"}));
   EXPECT_EQ(lines_of_start("mma_2"), lines_of_start("ipopt_2"));
   EXPECT_NE(contents_of(folder + "/compare.svg").find("Data profile"), std::string::npos);
-  // Eight solves are no time to converge in.
+  // The optimizers cannot converge within eight solves.
   EXPECT_NE(contents_of(folder + "/compare.md").find("| mma | 2/2 | 0/2 |"), std::string::npos);
   EXPECT_EQ(lines_with(contents_of(folder + "/compare.md"), ", unfinished"), 4U);
   EXPECT_EQ(test::lines_of(ended.out).size(), 6U) << ended.out;
 
-  // Figures are what the columns say.
-  const auto figure = table.numbers("figure"), judged = table.numbers("body_fitted"),
+  // The figure of merit follows from the other columns.
+  const auto figure = table.numbers("figure"), verified = table.numbers("body_fitted"),
              volume = table.numbers("body_fitted_volume"),
              error = table.numbers("body_fitted_error");
   for (size_t i = 0; i < figure.size(); ++i) {
-    if (std::isinf(judged[i])) {  // after eight solves a load may still act on a loose piece
-      EXPECT_EQ(figure[i], judged[i]);
+    // after eight solves a load may act on a region that is not connected to a support
+    if (std::isinf(verified[i])) {
+      EXPECT_EQ(figure[i], verified[i]);
       continue;
     }
-    EXPECT_NEAR(figure[i], judged[i] * volume[i] / 0.4, 1e-12 * figure[i]);  // two roundings
+    EXPECT_NEAR(figure[i], verified[i] * volume[i] / 0.4, 1e-12 * figure[i]);  // two roundings
     EXPECT_LE(error[i], 0.005);
   }
 }
 
-// Without a budget the optimizer of the case runs as it does alone: the same design, the same
-// verdict.
+// Without a budget the optimizer of the case gives the design and the verdict of a normal run.
 TEST(Compare, RunsTheOptimizerOfTheCaseAsARunDoes) {
   const Scratch scratch;
   const std::string compared = scratch / "compare", folder = scratch / "run";
@@ -316,7 +323,8 @@ TEST(Compare, RefusesNamesThatAreUnknownOrTwice) {
   }
 }
 
-// The study passes an interruption on; the run under way keeps what it has, the next never starts.
+// An interruption of the study interrupts the current run, which keeps its results, and prevents
+// the next one.
 TEST(Compare, StopsWhenInterruptedAndGoesOnLater) {
   const Scratch scratch;
   const std::string folder = scratch / "compare";
@@ -324,7 +332,7 @@ TEST(Compare, StopsWhenInterruptedAndGoesOnLater) {
                             {"--optimizers", "mma", "--starts", "2", "--budget", "1000000", "--set",
                              "optimizer.kkt_tolerance=0"});
   testing::ChildProgram study = test::start(scratch, words);
-  // The study runs until it is interrupted; if it ends by itself, the test goes on and fails.
+  // The study runs until it is interrupted. If it ends earlier, the test fails.
   ASSERT_TRUE(testing::eventually(study, [&] {
     return test::lines_of(contents_of(folder + "/mma_1/history.csv")).size() >= 3;
   })) << study.end().err;

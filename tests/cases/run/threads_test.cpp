@@ -1,5 +1,5 @@
-// Runs with several threads: motions side by side, files written beside the design, cells and loads
-// shared. What comes out are the bytes of one thread.
+// Shows that runs with several threads write the bytes of a run with one thread: motions in
+// parallel, files written in the background, cells and loads shared between threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without what a clock says, and the number of threads.
+/// Returns the text of a file without run times and without the number of threads.
 std::string timeless(const fs::path& file, std::string text) {
   if (file.filename() == "history.csv") {
     std::string out;
@@ -35,21 +35,22 @@ std::string timeless(const fs::path& file, std::string text) {
 std::map<std::string, std::string> files_of(const std::string& folder) {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && entry.path().filename() != ".flexmorph")  // who, and what
+    // describes the process that wrote the folder
+    if (entry.is_regular_file() && entry.path().filename() != ".flexmorph")
       out[fs::relative(entry.path(), folder)] =
           timeless(entry.path(), contents_of(entry.path().string()));
   return out;
 }
 
-/// Runs with each of these numbers of threads, the first one is "1".
+/// Runs the case with each of these numbers of threads; the first one is "1".
 void expect_same_bytes(const Words& numbers) {
   std::map<std::string, std::string> one;
   std::string said;
   for (const std::string& threads : numbers) {
     const Scratch scratch;
     const std::string folder = scratch / "out";
-    // 47 loads, in two blocks that threads share: an odd number, so that columns of doubles would
-    // not all begin at the same place of a vector register.
+    // 47 loads form two blocks that threads share. The number is odd, therefore columns of doubles
+    // have different alignments.
     Words words = short_run(
         folder, {"verify.mesh=[12,2]", "output.plots=true", "esl.every=0.005", "time.end=0.235",
                  "esl.compress=false", "design.cell=0.0025", "optimizer.max_iterations=1"});
@@ -57,7 +58,7 @@ void expect_same_bytes(const Words& numbers) {
     const Ended ended = flexmorph(scratch, words);
     ASSERT_EQ(ended.code, kTooFew) << ended.err;
     std::string out;
-    for (const std::string& line : lines_of(ended.out))  // how far a run is, is said by the clock
+    for (const std::string& line : lines_of(ended.out))  // progress depends on the clock
       if (!line.ends_with(" left") && !line.starts_with("done")) out += line + "\n";
     for (size_t at; (at = out.find(folder)) != std::string::npos;) out.erase(at, folder.size());
     const std::map<std::string, std::string> files = files_of(folder);

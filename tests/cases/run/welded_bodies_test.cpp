@@ -1,6 +1,6 @@
-// Plates and beams welded to each other: two that go on straight against one of the same mesh, an
-// L-shaped frame and a portal against the textbook, plates in the place of beams, the energy of a
-// frame that swings, forces against weight, and what cannot be welded.
+// Shows that plates and beams welded to each other are correct: two strips in line against one of
+// an equal mesh, an L-shaped frame and a portal against the textbook, plates instead of beams, the
+// energy of a swinging frame, forces against weight; and that impossible welds are refused.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +26,7 @@ std::string number(double x) {
   return out.str();
 }
 
-/// A strip, as a plate or a beam.
+/// A strip that is modelled as a plate or as a beam.
 struct Strip {
   std::string name;
   bool beam = false;
@@ -61,7 +61,7 @@ std::string in_hub(const std::string& body, const std::string& hub, double angle
          "\"\nangle = " + number(angle) + "\n";
 }
 
-/// @param more  of the table of the weld
+/// @param more  further lines of the table of the weld
 std::string welded(const std::string& body, const std::string& edge, const std::string& to,
                    const std::string& to_edge, const std::string& more = "") {
   return "\n[[joint]]\ntype = \"weld\"\nbody = \"" + body + "\"\nedge = \"" + edge + "\"\nto = \"" +
@@ -86,8 +86,8 @@ io::CsvTable table_of(const Scratch& scratch, const std::string& text, const std
   return io::read_csv(folder + "/" + table);
 }
 
-/// One strip of 0.8 m in a hub that swings, or two of 0.4 m; of the second one the end called
-/// `edge` is at the weld. It bends by 0.1 m.
+/// Returns one strip of 0.8 m in a hub that swings, or two strips of 0.4 m whose second one is
+/// welded at its end `edge`. The strips bend by 0.1 m.
 std::string swinging(bool beam, const std::string& edge) {
   const std::string start = R"toml(
 title = "Strips in a hub"
@@ -115,7 +115,8 @@ angle = "turn"
          seen("outer", edge == "root" ? 0.4 : 0);
 }
 
-// All slopes continuous: the same mesh, the same motion to what Newton's method leaves.
+// With all derivatives continuous at the weld the two strips have the motion of one strip with an
+// equal mesh, up to the tolerance of Newton's method.
 TEST(WeldedBodies, ThatGoOnStraightAreOne) {
   for (const bool beam : {false, true}) {
     const Scratch scratch;
@@ -140,7 +141,8 @@ TEST(WeldedBodies, ThatGoOnStraightAreOne) {
   }
 }
 
-/// Deflection of two plates in a wall, welded in the middle, or of one, under a force at the end.
+/// Returns the deflection under a force at the end: of two plates welded in the middle, or of one,
+/// in a wall.
 double deflection(const std::string& mode, int fine) {
   const std::string start = "title = \"Strips\"\n[static]\n[[hub]]\nname = \"wall\"\n";
   Strip strip{"inner", false, 0.4, 0.1, 0.01, 1e8, {4 * fine, 2 * fine}};
@@ -162,7 +164,8 @@ double deflection(const std::string& mode, int fine) {
       .back();
 }
 
-// Strains that may jump at the weld do not in the limit: the difference goes with the mesh.
+// With mode "edge" strains may jump at the weld. These jumps vanish under refinement: the
+// difference decreases with the mesh.
 TEST(WeldedBodies, WithJumpsOfStrainConverge) {
   double last = 0;
   for (const int fine : {1, 2}) {
@@ -171,7 +174,7 @@ TEST(WeldedBodies, WithJumpsOfStrainConverge) {
     EXPECT_LT(one, -5e-3);
     EXPECT_NEAR(full, one, 1e-10);
     std::cout << fine << ": " << one << " m, the weld of edges " << edge << " m more" << std::endl;
-    EXPECT_GT(edge, 0);  // fewer conditions: softer
+    EXPECT_GT(edge, 0);  // fewer constraints make it softer
     if (fine > 1) {
       EXPECT_LT(edge, last / 4);
     }
@@ -179,37 +182,38 @@ TEST(WeldedBodies, WithJumpsOfStrainConverge) {
   }
 }
 
-constexpr double kColumn = 1.2, kLeg = 0.8, kDepth = 0.02, kThick = 0.03, kForce = 0.5;
+constexpr double kColumn = 1.2, kSegment = 0.8, kDepth = 0.02, kThick = 0.03, kForce = 0.5;
 constexpr double kBending = 2e11 * kThick * kDepth * kDepth * kDepth / 12;  // EI [N m²]
 
-/// A column in a wall, and a leg to the right that is pulled down at its end; the leg is listed
-/// first.
+/// Returns the tip displacement of a column in a wall with a leg to the right that is pulled down
+/// at its end. The leg is listed first.
 std::array<double, 2> corner(bool beam_column, bool beam_leg, int fine) {
   const Strip column{"column", beam_column, kColumn, kDepth, kThick, 2e11, {12 * fine, 1}};
-  const Strip leg{"leg", beam_leg, kLeg, kDepth, kThick, 2e11, {8 * fine, 1}};
+  const Strip leg{"leg", beam_leg, kSegment, kDepth, kThick, 2e11, {8 * fine, 1}};
   const Scratch scratch;
   const io::CsvTable path =
       table_of(scratch,
                "title = \"A corner\"\n[static]\nsteps = 1\n[[hub]]\nname = \"wall\"\n" +
                    leg.toml() + column.toml() + in_hub("column", "wall", kRight) +
                    welded("leg", "root", "column", "free_end", "angle = " + number(-kRight)) +
-                   pulled("leg", kLeg, 0, -kForce) + seen("leg", kLeg),
+                   pulled("leg", kSegment, 0, -kForce) + seen("leg", kSegment),
                "path.csv");
   return {path.numbers("leg.tip_ux").back(), path.numbers("leg.tip_uy").back()};
 }
 
-// The column bends under P L, the leg under P. Left out: stretch and shear, (d/L)² = 6e-4 of the
-// leg's own part, a fifth of it all, and deflections of 1e-4 of the length.
+// Reference: bending of the column under P L and of the leg under P. Neglected are stretch and
+// shear, (d/L)² = 6e-4 of the leg's deflection, which is a fifth of the total, and the nonlinearity
+// of deflections of 1e-4 of the length.
 TEST(WeldedBodies, MakeAFrame) {
-  const double down = kForce * kLeg * kLeg * (kLeg / 3 + kColumn) / kBending,
-               aside = kForce * kLeg * kColumn * kColumn / (2 * kBending);
+  const double down = kForce * kSegment * kSegment * (kSegment / 3 + kColumn) / kBending,
+               aside = kForce * kSegment * kColumn * kColumn / (2 * kBending);
   const auto [x, y] = corner(true, true, 2);
   EXPECT_NEAR(y, -down, 1e-3 * down);
   EXPECT_NEAR(x, aside, 1e-3 * aside);
 }
 
-// A plate in the place of a beam bends alike but for its ends, which keep their width: over a
-// length of about the depth, 1/60 and 1/40 of the strips.
+// A plate instead of a beam differs only near its ends, which keep their width, over a length of
+// about the depth: 1/60 and 1/40 of the strips.
 TEST(WeldedBodies, TakePlatesForBeams) {
   const double beams = corner(true, true, 1)[1];
   for (const auto& [beam_column, beam_leg] : {std::pair(true, false), std::pair(false, true)}) {
@@ -223,14 +227,15 @@ TEST(WeldedBodies, TakePlatesForBeams) {
   }
 }
 
-// A portal on two walls closes a chain: sway by the slope-deflection method, joints turned by θ,
+// A portal on two walls closes a kinematic chain. Reference: sway by the slope-deflection method
+// with joints rotated by θ,
 //   (4/H + 6/L) θ = 6 Δ/H²,   P = 2 EI (12 Δ/H³ - 6 θ/H²)
 TEST(WeldedBodies, CloseAChain) {
   const Strip left{"left", true, kColumn, kDepth, kThick, 2e11, {24, 1}};
   Strip right = left, beam = left;
   right.name = "right";
   beam.name = "beam";
-  beam.length = kLeg;
+  beam.length = kSegment;
   const Scratch scratch;
   const io::CsvTable path = table_of(
       scratch,
@@ -240,16 +245,16 @@ TEST(WeldedBodies, CloseAChain) {
           in_hub("right", "b", kRight) +
           welded("beam", "root", "left", "free_end", "angle = " + number(-kRight)) +
           welded("beam", "free_end", "right", "free_end", "angle = " + number(-kRight)) +
-          pulled("beam", 0, 1, 0) + seen("beam", 0.5 * kLeg),
+          pulled("beam", 0, 1, 0) + seen("beam", 0.5 * kSegment),
       "path.csv");
-  const double turn = 6 / (kColumn * kColumn) / (4 / kColumn + 6 / kLeg);  // θ/Δ
+  const double turn = 6 / (kColumn * kColumn) / (4 / kColumn + 6 / kSegment);  // θ/Δ
   const double sway =
       1 / (2 * kBending * (12 / std::pow(kColumn, 3) - 6 * turn / (kColumn * kColumn)));
   EXPECT_NEAR(path.numbers("beam.tip_ux").back(), sway, 2e-3 * sway);
 }
 
-// A frame that falls around a pin keeps its energy with bilinear rows (beams, partial) and linear
-// ones, as the integrator does.
+// A frame that falls around a pin keeps its energy, as the integrator guarantees: with bilinear
+// constraints (beams, partial) and with linear ones.
 TEST(WeldedBodies, KeepTheirEnergy) {
   for (const bool beam : {true, false}) {
     const Strip column{"column", true, 0.4, 0.04, 0.01, 1e7, {4, 1}};
@@ -273,8 +278,8 @@ TEST(WeldedBodies, KeepTheirEnergy) {
   }
 }
 
-// At rest a named weld carries the weight of what is behind it, with its moment about the middle of
-// the edge; the strips hang by 1e-5 of their length. It moves nothing: no power.
+// A static named weld carries the weight behind it and its moment about the middle of the edge; the
+// strips deflect by 1e-5 of their length.
 TEST(WeldedBodies, CarryWeight) {
   for (const bool beam : {false, true}) {
     const Scratch scratch;
@@ -301,50 +306,50 @@ const std::string kHeld =
     "title = \"Bad\"\n[time]\nstep = 1e-3\nend = 0.1\n"
     "[[hub]]\nname = \"wall\"\nangular_velocity = 0.0\n";
 
-/// What is said of a case file with these bodies in a hub.
+/// Returns the error message for a case file with these bodies in a hub.
 std::string refusal(const std::string& bodies) {
   const Scratch scratch;
   const std::string file = scratch.write("bad.toml", kHeld + bodies);
   const std::string text =
       testing::error_of(Error::Kind::input, [&] { cases::read_scene(io::CaseFile(file)); });
-  EXPECT_TRUE(testing::says(text, "bad.toml:")) << text;
+  EXPECT_TRUE(testing::mentions(text, "bad.toml:")) << text;
   return text;
 }
 
 TEST(WeldedBodies, AreRefusedWhereEdgesDoNotMeet) {
-  const auto says = [](const std::string& bodies, const std::string& what) {
+  const auto mentions = [](const std::string& bodies, const std::string& what) {
     const std::string text = refusal(bodies);
-    EXPECT_TRUE(testing::says(text, what)) << text;
+    EXPECT_TRUE(testing::mentions(text, what)) << text;
   };
   const std::string a = Strip{"a"}.toml() + in_hub("a", "wall"), b = Strip{"b"}.toml(),
                     beam = Strip{"b", true}.toml();
   const auto weld = [](const std::string& more = "", const std::string& to = "a") {
     return welded("b", "root", to, "free_end", more);
   };
-  says(a + b + weld("", "c"), "to");
-  says(a + b + weld("", "b"), "a weld is between two bodies");
-  says(a + b + "\n[[joint]]\ntype = \"weld\"\nbody = \"b\"\nedge = \"root\"\nto = \"a\"\n",
-       "to_edge");
-  says(a + b + welded("b", "side_low", "a", "free_end"), "side_low");
-  says(a + b + weld("mode = \"direction\""), "direction");
-  says(a + b + weld("mode = \"partial\""), "only beams are welded partially");
-  says(a + beam + weld("mode = \"full\""), "a plate and a beam are welded by \"edge\"");
-  says(a + b + weld("angle = 1.0"), "plates meet edge on edge");
-  says(a + Strip{"b", false, 0.4, 0.1, 0.01, 2e11, {4, 2}}.toml() + weld(), "node on node");
-  says(a + Strip{"b", false, 0.4, 0.2}.toml() + weld(), "node on node");
-  says(a + b + weld() + weld(), "other welds make these one already");
-  says(a + b + in_hub("b", "wall") + welded("b", "root", "a", "root"),
-       "other welds make these one already");
-  says(a + b + welded("b", "root", "a", "root") + in_hub("b", "wall"),
-       "other welds make these one already");
+  mentions(a + b + weld("", "c"), "to");
+  mentions(a + b + weld("", "b"), "a weld connects two different bodies");
+  mentions(a + b + "\n[[joint]]\ntype = \"weld\"\nbody = \"b\"\nedge = \"root\"\nto = \"a\"\n",
+           "to_edge");
+  mentions(a + b + welded("b", "side_low", "a", "free_end"), "side_low");
+  mentions(a + b + weld("mode = \"direction\""), "direction");
+  mentions(a + b + weld("mode = \"partial\""), "\"partial\" is for beams only");
+  mentions(a + beam + weld("mode = \"full\""), "a plate and a beam are welded by \"edge\"");
+  mentions(a + b + weld("angle = 1.0"), "the angle of a weld of two plates is 0 or pi");
+  mentions(a + Strip{"b", false, 0.4, 0.1, 0.01, 2e11, {4, 2}}.toml() + weld(), "node to node");
+  mentions(a + Strip{"b", false, 0.4, 0.2}.toml() + weld(), "node to node");
+  mentions(a + b + weld() + weld(), "other welds connect these two already");
+  mentions(a + b + in_hub("b", "wall") + welded("b", "root", "a", "root"),
+           "other welds connect these two already");
+  mentions(a + b + welded("b", "root", "a", "root") + in_hub("b", "wall"),
+           "other welds connect these two already");
   std::string growing = Strip{"a"}.toml();
   growing.replace(growing.find("ancf_plate"), 10, "ale_ancf_plate");
   growing += "[body.flow]\nspeed = 0.5\nmax_length = 0.1\n" + in_hub("a", "wall");
-  says(growing + b + welded("b", "root", "a", "root"), "moves through the material");
+  mentions(growing + b + welded("b", "root", "a", "root"), "moves through the material");
 }
 
-// A designed plate may carry another one, but where it moves on the cells of its design their nodes
-// part: said before anything is computed.
+// A designed plate may carry another plate. But on the cells of the design their nodes do not
+// coincide; this is reported before anything is computed.
 TEST(WeldedBodies, PartOnTheCellsOfADesign) {
   const std::string designed = Strip{"a"}.toml() + in_hub("a", "wall") + Strip{"b"}.toml() +
                                welded("b", "root", "a", "free_end") + R"toml(
@@ -364,7 +369,8 @@ name = "mma"
   EXPECT_EQ(scene.designs.size(), 1U);
   for (const char* more : {"[verify]\ncells = 1\n", "[certificate]\n"}) {
     const std::string text = refusal(designed + more);
-    EXPECT_TRUE(testing::says(text, "on the cells of the design their nodes do not meet")) << text;
+    EXPECT_TRUE(testing::mentions(text, "their nodes do not coincide on the cells of the design"))
+        << text;
   }
 }
 

@@ -1,4 +1,4 @@
-// Scenes whose steps adapt: what the keys of [time] become.
+// Shows that the keys of [time] for adaptive steps have the documented defaults and effects.
 #include <gtest/gtest.h>
 
 #include "cases/assembly/build.h"
@@ -17,7 +17,7 @@ TEST(AdaptiveScene, HasDefaults) {
   ASSERT_TRUE(motion.adaptive);
   EXPECT_EQ(motion.adaptive->tolerance, 1e-4);
   EXPECT_EQ(motion.adaptive->largest, 0);
-  EXPECT_TRUE(motion.kinks.empty());
+  EXPECT_TRUE(motion.discontinuities.empty());
   EXPECT_EQ(motion.step, 1e-3);
 }
 
@@ -31,10 +31,10 @@ TEST(AdaptiveScene, TakesToleranceAndLargestStep) {
 
 TEST(AdaptiveScene, LandsOnTheEndOfTheSpinUp) {
   const Scene scene = read({"time.start=hub_at_rest", "time.spin_up=0.3"});
-  EXPECT_EQ(build_mechanism(scene).motion.kinks, std::vector<double>{0.3});
+  EXPECT_EQ(build_mechanism(scene).motion.discontinuities, std::vector<double>{0.3});
 }
 
-// A verification has the scene's kind of steps, or equal ones where it names their size.
+// A verification uses the kind of steps of the scene, or constant steps if it gives their size.
 TEST(AdaptiveScene, VerificationMayHaveItsOwnSteps) {
   const auto adapts = [](const Scene& scene) {
     Mechanism mechanism = build_mechanism(scene);

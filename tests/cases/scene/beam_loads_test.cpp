@@ -1,4 +1,4 @@
-// Loads of beams against the textbook.
+// Shows that loads on beams give the deflections of textbook formulas.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ struct Bent {
   Mechanism m;
   fem::State x;
   Vec2 tip() const { return fem::point_position(m.model.body("rod"), x, {1, 0}).head<2>(); }
-  /// Of the axis at the tip.
+  /// Returns the angle of the axis at the tip.
   double angle() const {
     const Vec2 before = fem::point_position(m.model.body("rod"), x, {1 - 1e-6, 0}).head<2>();
     const Vec2 along = tip() - before;
@@ -30,14 +30,15 @@ struct Bent {
 Bent bend(const std::string& text, const Changes& changes = {}) {
   const Scene scene = scene_of(text, changes);
   Bent out{build_mechanism(scene), {}};
-  out.x =
-      fem::start_state(out.m.model, out.m.growths, 0, fem::Start::rigid, out.m.motion.placement);
+  out.x = fem::start_state(out.m.model, out.m.moving_roots, 0, fem::Start::rigid,
+                           out.m.motion.body_poses);
   EXPECT_TRUE(fem::solve_static(out.m.model, out.x, {}).completed);
   return out;
 }
 
-// Timoshenko: q L^4 / (8 E I) + q L^2 / (2 G A), shear with the whole section as these elements
-// have it; 2e-5 of the length, nonlinear terms are the square of that. The ANCF mesh: some 1e-3.
+// Reference: Timoshenko's beam, q L^4 / (8 E I) + q L^2 / (2 G A), with the shear area of these
+// elements, the whole section. The deflection is 2e-5 of the length, and nonlinear terms are the
+// square of this. The error of the ANCF mesh is some 1e-3.
 TEST(Loads, ForcePerLengthBendsABeamAsTheTextbookSays) {
   const double q = 2e-3, expected = q / (8 * kEI) + q / (2 * kGA);
   for (const std::string turns : {"false", "true"}) {
@@ -47,7 +48,7 @@ TEST(Loads, ForcePerLengthBendsABeamAsTheTextbookSays) {
   }
 }
 
-// An end moment: every section turns evenly, M L / (E I) = 1 rad at the tip.
+// An end moment bends the beam to an arc whose tip has turned by M L / (E I) = 1 rad.
 TEST(Loads, TorqueAtTheTipBendsABeamToAnArc) {
   const Bent bent =
       bend(kCantilever +
@@ -56,8 +57,8 @@ TEST(Loads, TorqueAtTheTipBendsABeamToAnArc) {
   EXPECT_NEAR(bent.tip().y(), 1 - std::cos(1.0), 2e-3);
 }
 
-// A force that turns with the tip: the root holds just that force, turned as the tip is, and its
-// moment about the root; whatever the stiffness.
+// A force turns with the tip. The reaction at the root is this force, rotated as the tip is, and
+// its moment about the root, whatever the stiffness.
 TEST(Loads, TurningForceOfABeamIsTurnedAsItsTip) {
   Bent bent = bend(kCantilever + load("point",
                                       "body = \"rod\"\npoint = [1.0, 0.0]\nforce = [0.0, 20.0]\n"
@@ -74,7 +75,7 @@ TEST(Loads, TurningForceOfABeamIsTurnedAsItsTip) {
   EXPECT_NEAR(root.moment.z(), -(tip.x() * force.y() - tip.y() * force.x()), 20 * 1e-5);
 }
 
-// m g a^2 (3 L - a) / (6 E I) + m g a / (G A), and of the weight of the rod nothing: it has none.
+// Reference: m g a^2 (3 L - a) / (6 E I) + m g a / (G A). The rod itself has practically no weight.
 TEST(Loads, PointMassAnywhereOnABeamWeighs) {
   const double a = 0.375, mg = 1e-3 * 10;
   const Bent bent =

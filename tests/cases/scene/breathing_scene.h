@@ -10,7 +10,7 @@
 
 namespace flexmorph::cases {
 
-/// A turning plate whose length goes up and down.
+/// A rotating plate whose length increases and decreases.
 inline const std::string kBreathing = R"toml(
 [time]
 end = 1.0

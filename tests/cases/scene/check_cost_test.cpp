@@ -1,4 +1,5 @@
-// What `flexmorph check` says of a step's cost, against instructions that valgrind counted.
+// Shows that the cost of a step according to `flexmorph check` agrees with instructions that
+// valgrind counted, within a factor of two.
 #include "cases/check/check_cost.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 struct Counted {
   std::string name;
   std::vector<std::string> changes;
-  double millions;  ///< instructions of fem::integrate() per step, portable build
+  double millions;  ///< Instructions of fem::integrate() per step [million], portable build.
 };
 
 using Words = std::vector<std::string>;
@@ -24,8 +25,9 @@ Words plus(Words a, const Words& b) {
   return a;
 }
 
-// Differences of runs of 20 and 40 or 60 steps, as tests/benchmark/absent_cost.sh makes them; of
-// the path ten steps, less what the program does without them. Bending was counted at 5 x 5 points.
+// The reference values are differences between runs of 20 and of 40 or 60 steps, as in
+// tests/benchmark/absent_cost.sh; for the static path the count of ten steps minus that of a run
+// without them. Bending was counted with 5 x 5 points.
 TEST(StepOperations, AreWithinAFactorOfTwoOfCountedInstructions) {
   const Words plate = {"esl=", "design=", "optimizer=", "cycle=", "verify=", "accuracy="},
               at_rest = {"body.flow=", "body.element=ancf_plate"},

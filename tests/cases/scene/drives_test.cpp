@@ -1,6 +1,6 @@
-// Drives of case files: read from formulas, tables and CSV files, refused with their place; a
-// driven scene moves as the same one at constant speeds, as one under the inertia force of its
-// frame, and changes its mesh when its length says so, in both directions.
+// Shows that drives of case files are read from formulas, tables and CSV files and refused with
+// their location; and that a driven scene moves as an equivalent scene with constant speeds or with
+// the inertia force of its frame, and changes its mesh in both directions as its length requires.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,12 +29,13 @@ TEST_F(Drives, AreReadFromFormulasTablesAndFiles) {
   EXPECT_NEAR(length.rate, 0.4 * kPi * std::cos(0.6 * kPi), 1e-14);
   EXPECT_NEAR(length.acceleration, -0.8 * kPi * kPi * std::sin(0.6 * kPi), 1e-13);
   EXPECT_NEAR(s.drives[1].motion(0.75).value, 0.6, 1e-14);
-  // The spline of 21 points of the sine: h^6 times a number of order 1e-2.
+  // The error of the quintic spline of 21 points is h^6 times a factor of order 1e-2.
   EXPECT_NEAR(s.drives[2].motion(0.333).value, std::sin(0.333), 1e-9);
   EXPECT_NEAR(s.drives[2].motion(0.333).rate, std::cos(0.333), 1e-7);
 }
 
-// Starts look a little before t = 0 and integrators a rounding error beyond the end.
+// A start evaluates a drive slightly before t = 0, an integrator up to a rounding error beyond the
+// end.
 TEST_F(Drives, GoOnAsParabolasBeyondTheRun) {
   const Scene s = read({"drive.out.formula=\"0.45 + t^2.5\""});
   const fem::Motion before = s.drives[0].motion(-1e-4), end = s.drives[0].motion(1),
@@ -51,48 +52,50 @@ TEST_F(Drives, LengthsOfABodyFollowTheirDrive) {
   EXPECT_NEAR(plate.longest(1), 0.65, 1e-10);
   EXPECT_NEAR(plate.shortest(1), 0.25, 1e-10);
   EXPECT_NEAR(plate.length_at(0.75), 0.25, 1e-15);
-  // Extremes between the samples: at the stationary points of t sin(t).
+  // The extremes lie between the samples, at the stationary points of t sin(t).
   const Scene odd =
       read({"time.end=9", "hub.angle=0", "hub.angular_velocity=0", "hub.position=[0, 0]",
             "drive=[{name=\"out\", formula=\"0.45 + 0.1/9*t*sin(t)\"}]"});
-  // t + tan t = 0: 2.028757838110434, 4.913180439434884, 7.978665712413241.
+  // Solutions of t + tan t = 0: 2.028757838110434, 4.913180439434884, 7.978665712413241.
   EXPECT_NEAR(odd.bodies[0].longest(9),
               0.45 + 0.1 / 9 * 7.978665712413241 * std::sin(7.978665712413241), 1e-10);
   EXPECT_NEAR(odd.bodies[0].shortest(9),
               0.45 + 0.1 / 9 * 4.913180439434884 * std::sin(4.913180439434884), 1e-10);
 }
 
-TEST_F(Drives, AreRefusedWithTheirPlace) {
+TEST_F(Drives, AreRefusedWithTheirLocation) {
   const std::vector<std::pair<Changes, std::string>> wrong = {
       {{"drive.out.formula=\"L0 + swung*t\""},
        "drive.out.formula=\"L0 + swung*t\": character 6: 'swung' is unknown"},
-      {{"drive.out.formula=\"0.45 + t*\""}, ": character 10: unexpected token, got: EOF"},
+      {{"drive.out.formula=\"0.45 + t*\""},
+       ": character 10: a number, a name or '(' is needed here"},
       {{"drive.out.formula=\"0.45/(1 - t)\""}, "its value at t = 1 s is infinite"},
       {{"drive.out.formula=\"0.45 + sqrt(t)\""}, "its rate at t = 0 s is infinite"},
-      {{"time.end=1e15"}, "1e+18 steps; the most are 2.15e+09"},
+      {{"time.end=1e15"}, "1e+18 steps are needed; the largest number of steps is 2.15e+09"},
       {{"drive.out.formula=3"}, "a formula of the time t is a text in quotes"},
-      {{"drive.out.table=[[0, 0]]"}, "a drive has one of `formula`, `table`, `csv` and `from`"},
+      {{"drive.out.table=[[0, 0]]"},
+       "a drive needs exactly one of `formula`, `table`, `csv` and `from`"},
       {{"drive.turn.table=[[0, 0], [0.5, 1], [1, 2]]"}, "a table has at least 4 points, not 3"},
       {{"drive.turn.table=[[0, 0], [0.5, 1], [0.5, 2], [1, 3]]"},
        "row 3 of the table: times increase"},
       {{"drive.turn.table=[[0, 0], [0.5, 1], [0.7, 2], [0.9, 3]]"},
-       "a table covers the run from 0 to time.end = 1 s; this one lasts from 0 to 0.9 s"},
+       "a table must cover the run from 0 to time.end = 1 s; this table extends from 0 to 0.9 s"},
       {{"drive.turn.table=[[0, 0], [0.5, 1, 2]]"}, "a list: lists of 2 numbers"},
       {{"drive.side.csv=\"nowhere.csv\""}, "nowhere.csv: cannot be read"},
       {{"drive.side.column=z"}, "'side.csv' has no column 'z'"},
       {{"drive.side.column=note"}, "row 1 of the table: time and value are finite numbers"},
       {{"drive.side.name=out"}, "there is another drive 'out'"},
-      {{"constants.pi=3"}, "constants.pi=3: this name has a meaning in formulas already"},
+      {{"constants.pi=3"}, "constants.pi=3: this name is reserved in formulas"},
       {{"constants.L0=long"}, "a constant is a finite number"},
       {{"hub.angle=turns"}, "a drive is one of 'out', 'turn', 'side', did you mean 'turn'?"},
-      {{"hub.angular_velocity=1"}, "the drive of `angle` says how the hub turns"},
+      {{"hub.angular_velocity=1"},
+       "the drive of `angle` determines the angular velocity of the hub"},
       {{"hub.position=[\"side\"]"}, "a list of 2: a drive is one of"},
-      {{"time.start=hub_at_rest"}, "spins up hubs that turn at a constant rate, not driven ones"},
-      {{"body.flow.speed=0.1"}, "material flows at a `speed`, or as the drive `length` says"},
-      {{"body.length=0.4"}, "this drive starts at 0.45, 'plate' at length = 0.4 [m]"},
-      {{"constants.swing=0.44"}, "0.01 m are left at its shortest"},
-      {{"body.flow.min_length=0.045"},
-       "stays below 0.9 max_length, or elements are split and merged in turn"},
+      {{"time.start=hub_at_rest"}, "a driven hub cannot be used with time.start = \"hub_at_rest\""},
+      {{"body.flow.speed=0.1"}, "a material flow has either a `speed` or a drive `length`"},
+      {{"body.length=0.4"}, "this drive starts at 0.45 m, but 'plate' has length = 0.4 m"},
+      {{"constants.swing=0.44"}, "it is 0.01 m when the body is shortest"},
+      {{"body.flow.min_length=0.045"}, "is at most 0.9 max_length"},
       {{"drive.extra=1"}, "drive"},
   };
   for (const auto& [changes, words] : wrong) {
@@ -101,7 +104,7 @@ TEST_F(Drives, AreRefusedWithTheirPlace) {
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     EXPECT_TRUE(message.starts_with("--set ") || contains(message, "breathing.toml:")) << message;
   }
-  // In the file itself: file, line, key.
+  // For an error in the file itself the message contains file, line and key.
   std::string text = kBreathing;
   text.replace(text.find("L0 + swing"), 10, "L0 + twist");
   try {
@@ -119,22 +122,22 @@ TEST_F(Drives, AreShownByCheck) {
   EXPECT_TRUE(contains(
       out, "drive side            'side.csv', column 'y', 21 points, from 0 to 0.841471\n"));
   EXPECT_TRUE(
-      contains(out, "material leaves and enters the hub as 'out' says, length 0.25 to 0.65 m"));
+      contains(out, "drive 'out' moves material out of and into the hub, length 0.25 to 0.65 m"));
 }
 
 struct Course {
   fem::MotionResult result;
   std::vector<double> times;
-  std::vector<Vec2> tips;  // in the hub
+  std::vector<Vec2> tips;  // in the axes of the hub
 };
 
 Course run(const Scene& scene) {
   Mechanism m = build_mechanism(scene);
   Course out;
-  out.result = fem::integrate(m.model, m.growths, m.motion, [&](const fem::MotionStep& step) {
+  out.result = fem::integrate(m.model, m.moving_roots, m.motion, [&](const fem::MotionStep& step) {
     out.times.push_back(step.x.t);
     const Body& body = scene.bodies[0];
-    const fem::FrameMotion hub = m.growths[0].hub.at(step.model, step.x);
+    const fem::FrameMotion hub = m.moving_roots[0].hub.at(step.model, step.x);
     const Vec2 tip =
         fem::point_position(step.model.body(body.name), step.x,
                             {body.longest(scene.time.end), body.low() + 0.5 * body.width})
@@ -144,10 +147,11 @@ Course run(const Scene& scene) {
   return out;
 }
 
-// Times from arcsines. The root stands at m = 0.65 - L. Upwards the first element has 0.1 m at L =
-// 0.5, 0.55, 0.6, and a line comes in 0.05 m before the root; L = 0.65 is met at its turning point
-// between two steps. Downwards lines stand at 0.1, 0.15, ... and leave 0.03 m before the root, at
-// L = 0.58, 0.53, ..., the last one at 0.4 m. Upwards again the first line stands at 0.45 m.
+// Reference times follow from arcsines. The root lies at m = 0.65 - L. While the length increases,
+// the first element reaches 0.1 m at L = 0.5, 0.55, 0.6, and a line is inserted 0.05 m from the
+// root; L = 0.65 is reached at the turning point between two steps. While it decreases, lines lie
+// at 0.1, 0.15, ... and are removed 0.03 m from the root, at L = 0.58, 0.53, ..., the last one at
+// 0.4 m. When it increases again, the first line lies at 0.45 m.
 TEST_F(Drives, InsertAndRemoveLinesAsTheLengthGoesUpAndDown) {
   const Scene scene = read({"hub.angle=0", "hub.angular_velocity=1", "hub.position=[0, 0]"});
   const Course course = run(scene);
@@ -171,8 +175,8 @@ TEST_F(Drives, InsertAndRemoveLinesAsTheLengthGoesUpAndDown) {
   }
 }
 
-// The mesh of the driven scene is the one of the constant speeds, and so is its motion: the same
-// equations to round-off, which a stiff plate in 200 steps amplifies to less than 1e-9.
+// The driven scene has the mesh and the motion of the scene with constant speeds. The equations are
+// equal up to round-off, which a stiff plate amplifies to less than 1e-9 in 200 steps.
 TEST_F(Drives, OfConstantSpeedAreConstantSpeeds) {
   std::string text = kBreathing;
   const std::string by_drive = "length = \"out\"";
@@ -190,7 +194,8 @@ TEST_F(Drives, OfConstantSpeedAreConstantSpeeds) {
   for (size_t i = 0; i < a.tips.size(); ++i) EXPECT_LT((a.tips[i] - b.tips[i]).norm(), 1e-9) << i;
 }
 
-// Einstein's lift: a hub that is accelerated upwards at 9.81 m/s^2 bends its plate as weight does.
+// Equivalence of acceleration and gravity: a hub that is accelerated upwards at 9.81 m/s^2 bends
+// its plate as its weight does.
 TEST_F(Drives, OfPositionsActLikeGravity) {
   const auto with = [](const std::string& position, const std::string& gravity) {
     return Changes{"time.end=0.1",
@@ -210,10 +215,10 @@ TEST_F(Drives, OfPositionsActLikeGravity) {
     EXPECT_LT((lifted.tips[i] - heavy.tips[i]).norm(), 1e-9) << i;
 }
 
-// A plate that is pushed out of a hub at rest and drawn back, L(t), is stretched by its own
-// inertia: u = -ρ L̈ L² / (2 E) at its end, quasi-statically. Waves run along it in L/c = 2 ms: what
-// the jump of the third derivative at the start sets off is 2π / (π c / (2 L)) = 1 % of the largest
-// stretch.
+// A plate that is pushed out of a static hub and drawn back, L(t), is stretched by its own inertia.
+// Reference: the quasi-static end displacement u = -ρ L̈ L² / (2 E). Waves travel along the plate
+// in L/c = 2 ms; the jump of the third derivative at the start excites 2π / (π c / (2 L)) = 1 % of
+// the largest stretch.
 TEST_F(Drives, OfLengthsAccelerateTheMaterial) {
   const Scene scene = read(
       {"hub.angle=0", "hub.angular_velocity=0", "hub.position=[0, 0]", "body.poisson_ratio=0"});
@@ -232,7 +237,7 @@ TEST_F(Drives, OfLengthsAccelerateTheMaterial) {
   }
 }
 
-// A line drive `at` a straight line is the one at a speed.
+// A line drive with a linear function `at` equals a line drive with a constant speed.
 TEST_F(Drives, OfFreeLinesMoveThemThroughTheMaterial) {
   const std::string sleeve = contents_of(std::string(FLEXMORPH_CASES) + "/elastic_sleeve.toml");
   const std::string drive = "\n[[drive]]\nname = \"slide\"\nformula = \"0.42 + 0.5*t\"\n";
@@ -242,13 +247,14 @@ TEST_F(Drives, OfFreeLinesMoveThemThroughTheMaterial) {
   const Scene constant = read(brief, sleeve + joint + "speed = 0.5\n");
   const auto end = [](const Scene& scene) {
     Mechanism m = build_mechanism(scene);
-    return fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {}).final.q;
+    return fem::integrate(m.model, m.moving_roots, m.motion, [](const fem::MotionStep&) {}).final.q;
   };
   EXPECT_LT((end(driven) - end(constant)).cwiseAbs().maxCoeff(), 1e-9);
   for (const auto& [change, words] :
-       {std::pair<std::string, std::string>{"drive.formula=\"0.4 + t\"",
-                                            "this drive starts at 0.4, the line at 0.42 [m]"},
-        {"joint.1.speed=1", "a line moves at a `speed`, or as the drive `at` says"}}) {
+       {std::pair<std::string, std::string>{
+            "drive.formula=\"0.4 + t\"",
+            "this drive starts at 0.4 m, but the line starts at 0.42 m"},
+        {"joint.1.speed=1", "a line has either a `speed` or a drive `at`"}}) {
     try {
       read({change}, sleeve + joint + "at = \"slide\"\n" + drive);
       FAIL();
@@ -258,8 +264,9 @@ TEST_F(Drives, OfFreeLinesMoveThemThroughTheMaterial) {
   }
 }
 
-// A plate leaves a tool at (0.1, 0) along its axis: the point (m, n) of the plate is (0.1 + m, n)
-// in the axes of the tool, which is led along a path. Three struts of driven lengths hold it.
+// A plate extends from the point (0.1, 0) of a tool along its axis: the point (m, n) of the plate
+// is (0.1 + m, n) in the axes of the tool, which follows a path. Three struts of driven lengths
+// hold the plate.
 TEST_F(Drives, FromATrajectoryAreLengthsToPointsOfPlatesToo) {
   std::string text = R"toml(
 [time]

@@ -1,5 +1,5 @@
-// Figures that make wrong units visible: against the tangents of the models themselves, and the
-// mistakes that they are for.
+// Shows that the plausibility checks of bending and rotation agree with linearized models, and that
+// they detect wrong units.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -14,8 +14,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Small motions of a scene about its reference: frequencies [Hz], and the largest displacement of
-/// the observed point under all its forces.
+/// Small motions of a scene about its reference configuration: natural frequencies [Hz], and the
+/// displacements under all its forces.
 struct Linear {
   std::vector<double> frequencies;
   VectorXd displacement;
@@ -47,7 +47,8 @@ Linear linearized(const Scene& scene) {
   return out;
 }
 
-/// Largest displacement of a node across the surface: the first vector of every node.
+/// Returns the largest displacement of a node across the surface, from the first vector of every
+/// node.
 double largest_rise(const VectorXd& displacement) {
   double out = 0;
   for (Eigen::Index i = 2; i < displacement.size(); i += 12)
@@ -58,8 +59,8 @@ double largest_rise(const VectorXd& displacement) {
 const Changes kStrip = {"gravity=[0, 0, -9.81]", "body.density=7800",
                         "load=", "body.terms=[\"inertia\", \"membrane_assumed\", \"bending\"]"};
 
-// A strip in space, Poisson's ratio 0: what a cantilever is to the formula it is to the model, but
-// for its mesh of 16 elements.
+// A strip in space with Poisson's ratio 0: the formulas of a cantilever agree with the model up to
+// the error of its mesh of 16 elements.
 TEST(Figures, OfACantileverAreThoseOfItsModel) {
   const Scene scene = read("cantilever_roll_up", kStrip);
   const BendingFigures f = bending_figures(scene).at(0);
@@ -75,7 +76,8 @@ TEST(Figures, OfACantileverAreThoseOfItsModel) {
 }
 
 TEST(Figures, LoadsBendAsTheModelDoes) {
-  // The moment of the case rolls the strip up: 2 pi E I / L, by linear theory pi lengths.
+  // The moment of the case rolls the strip up: 2 pi E I / L, which deflects it by pi lengths in
+  // linear theory.
   EXPECT_NEAR(*bending_figures(read("cantilever_roll_up")).at(0).bend, std::numbers::pi, 1e-9);
   const Changes by_edge = {"load.type=edge", "load.moment=", "load.force=[0, 0, 0.1]",
                            "body.density=1"};
@@ -85,7 +87,7 @@ TEST(Figures, LoadsBendAsTheModelDoes) {
   EXPECT_NEAR(*f.bend, largest_rise(linearized(scene).displacement), 0.01 * *f.bend);
 }
 
-// Along its axis nothing bends.
+// A force along the axis causes no bending.
 TEST(Figures, AtRestAPullAlongTheAxisBendsNothing) {
   const Changes pull = {"load.type=edge", "load.moment=", "load.force=[1e6, 0, 0]"};
   EXPECT_FALSE(bending_figures(read("cantilever_roll_up", pull)).at(0).bend.has_value());
@@ -103,36 +105,38 @@ TEST(Figures, TurnsAreThoseOfHubsAndDrives) {
 
 TEST(Figures, ShippedCasesAreOrdinary) {
   for (const std::string& name : shipped_cases())
-    for (const std::string& each : odd_remarks(read(name))) ADD_FAILURE() << name << ": " << each;
+    for (const std::string& each : plausibility_remarks(read(name)))
+      ADD_FAILURE() << name << ": " << each;
 }
 
-// One mistake each, as people make them.
+// Each row contains one typical mistake.
 TEST(Figures, WrongUnitsAreOutOfTheOrdinary) {
   struct Row {
     const char* name;
     std::string change, words;
   };
   for (const Row& row : std::vector<Row>{
-           {"deploying_plate", "body.youngs_modulus=7", "Young's modulus of 7 Pa"},
-           {"deploying_plate", "body.youngs_modulus=7e6", "of its length under gravity"},
-           {"deploying_plate", "body.density=2.7", "a density of 2.7 kg/m^3"},
+           {"deploying_plate", "body.youngs_modulus=7", "Young's modulus is 7 Pa"},
+           {"deploying_plate", "body.youngs_modulus=7e6", "the deflection under gravity is"},
+           {"deploying_plate", "body.density=2.7", "the density is 2.7 kg/m^3"},
            {"deploying_plate", "body.thickness=5", "length / thickness = 0.18"},
            {"deploying_plate", "body.thickness=5e-6", "length / thickness = 1.8e+05"},
-           {"deploying_plate", "gravity=[0, 0, -9810]", "gravity of 9.81e+03 m/s^2"},
-           {"deploying_plate", "hub.angular_velocity=90", "14.3 turns: angles are radians"},
-           {"deploying_plate", "hub.angle=45", "an angle of 45 rad"},
-           {"deploying_plate", "hub.angular_velocity=3000", "3 rad in every time step"},
+           {"deploying_plate", "gravity=[0, 0, -9810]", "gravity is 9.81e+03 m/s^2"},
+           {"deploying_plate", "hub.angular_velocity=90",
+            "14.3 revolutions; angles are in radians"},
+           {"deploying_plate", "hub.angle=45", "the angle is 45 rad"},
+           {"deploying_plate", "hub.angular_velocity=3000", "3 rad per time step"},
            {"four_bar", "body.width=50", "length / width = 0.008"},
-           {"four_bar", "body.youngs_modulus=2", "nearly a cloth"},
-           {"four_bar", "body.length=0.004", "nearly rigid"},
-           {"slider_crank_heated", "drive.formula=\"180*t\"", "360 rad, 57.3 turns"}}) {
+           {"four_bar", "body.youngs_modulus=2", "almost no stiffness"},
+           {"four_bar", "body.length=0.004", "almost rigid"},
+           {"slider_crank_heated", "drive.formula=\"180*t\"", "360 rad, 57.3 revolutions"}}) {
     Changes changes = {row.change};
     for (const char* part :
          {"design=", "esl=", "optimizer=", "cycle=", "verify=", "accuracy=", "expect=", "observe="})
       changes.emplace_back(part);
     bool found = false;
     std::string all;
-    for (const std::string& each : odd_remarks(read(row.name, changes))) {
+    for (const std::string& each : plausibility_remarks(read(row.name, changes))) {
       found = found || (contains(each, row.words) &&
                         (starts(each, "--set " + row.change) || contains(each, ".toml:")));
       all += each + "\n";

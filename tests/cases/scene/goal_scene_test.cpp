@@ -1,5 +1,5 @@
-// What a design is to be good at, as cases say it: objectives, constraints and their shorthands
-// become rows of the table of responses; what cannot be meant is refused, and located.
+// Shows that goals of designs (objectives, constraints and their short forms) are read as rows of
+// the table of responses, and that goals without a meaning are refused with their location.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// short_beam with a density (2000 kg when it is full) and without a limit of its volume.
+/// Returns the goal of short_beam with a density (2000 kg for the full plate) and without a limit
+/// of the volume.
 mmc::Goal goal_of(Changes changes) {
   changes.insert(changes.begin(), {"domain.density=1000.0", "design.max_volume="});
   return read("short_beam", changes).designs[0].goal;
@@ -35,7 +36,7 @@ TEST(Goal, ShorthandsAreRows) {
   EXPECT_EQ(stiff.limits[0].row, &mmc::kVolume);
   EXPECT_EQ(stiff.limits[0].value, 0.4);
   EXPECT_FALSE(stiff.limits[0].at_least);
-  EXPECT_EQ(goal_words(stiff), "summed compliance under a volume of 0.4");
+  EXPECT_EQ(goal_text(stiff), "summed compliance under a volume of 0.4");
 
   const mmc::Goal light =
       goal_of({"design.minimize=volume", "design.loads=worst", "design.max_compliance=80.0"});
@@ -43,7 +44,7 @@ TEST(Goal, ShorthandsAreRows) {
   ASSERT_EQ(light.limits.size(), 1u);
   EXPECT_EQ(light.limits[0].row, &mmc::kComplianceWorst);
   EXPECT_EQ(light.limits[0].value, 80);
-  EXPECT_EQ(goal_words(light), "volume under a largest compliance of 80 J");
+  EXPECT_EQ(goal_text(light), "volume under a largest compliance of 80 J");
 }
 
 TEST(Goal, HasAnyNumberOfConstraints) {
@@ -58,16 +59,18 @@ TEST(Goal, HasAnyNumberOfConstraints) {
   EXPECT_EQ(goal.limits[1].value, 100);
   EXPECT_TRUE(goal.limits[1].at_least);
   EXPECT_EQ(goal.limits[2].row, &mmc::kComplianceSum);
-  EXPECT_DOUBLE_EQ(mmc::allowed_volume(goal).value(), 0.25);  // a mass is a volume
-  EXPECT_EQ(limit_words(goal),
+  // a limit of mass is a limit of volume
+  EXPECT_DOUBLE_EQ(mmc::allowed_volume(goal).value(), 0.25);
+  EXPECT_EQ(limit_text(goal),
             "mass at most 500 kg, mass at least 100 kg, summed compliance at most 90 J, volume at "
             "most 0.5");
-  EXPECT_EQ(goal_words(goal),
+  EXPECT_EQ(goal_text(goal),
             "largest compliance under a mass of 500 kg and a summed compliance of 90 J and a "
             "volume of 0.5 with a mass of at least 100 kg");
 }
 
-// Where the start of the layout is thick enough for it: a quarter of two crossing bars.
+// A limit of mass determines the start layout as the equivalent limit of volume does: the bars of
+// both layouts are equally thick.
 TEST(Goal, LimitOfMassMakesTheStart) {
   const Scene by_volume = read("short_beam", {"design.max_volume=0.25"});
   const Scene by_mass = read(
@@ -92,20 +95,21 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Refused{"no_density",
                 {"domain.density=", "design.constraint=[{response='mass', at_most=1.0}]"},
-                "a plate without a density has none: domain.density [kg/m^3]"},
+                "set domain.density [kg/m^3]"},
         Refused{"unknown",
                 {"design.constraint=[{response='beauty', at_least=1.0}]"},
                 "a response is one of 'compliance', 'volume', 'mass'"},
-        Refused{"unnamed", {"design.constraint=[{at_most=0.5}]"}, "a constraint is one on a"},
+        Refused{
+            "unnamed", {"design.constraint=[{at_most=0.5}]"}, "a constraint needs a `response`"},
         Refused{"no_bound",
                 {"design.constraint=[{response='volume'}]"},
-                "a constraint has `at_most`, `at_least` or both"},
+                "a constraint needs `at_most`, `at_least` or both"},
         Refused{"loads",
                 {"design.constraint=[{response='volume', loads='sum', at_most=0.5}]"},
-                "only \"compliance\" puts loads together"},
+                "only \"compliance\" combines loads"},
         Refused{"minimized",
                 {"design.constraint=[{response='compliance', at_most=80.0}]"},
-                "what is minimized has no limit"},
+                "a minimized response has no limit"},
         Refused{"twice",
                 {"design.max_volume=0.5", "design.constraint=[{response='volume', at_most=0.4}]"},
                 "the volume has a limit already"},
@@ -114,19 +118,19 @@ INSTANTIATE_TEST_SUITE_P(
                 "only \"volume\", \"mass\""},
         Refused{"crossed",
                 {"design.constraint=[{response='volume', at_most=0.3, at_least=0.4}]"},
-                "no more than `at_most`"},
+                "a lower limit is at most `at_most`"},
         Refused{"too_much",
                 {"design.constraint=[{response='mass', at_most=2001.0}]"},
                 "a mass lies between 0 and 2000 (0 excluded) [kg]"},
         Refused{"full",
                 {"design.constraint=[{response='volume', at_least=0.4}]"},
-                "a full plate is the stiffest"},
+                "the full plate is the stiffest"},
         Refused{"empty",
                 {"design.minimize=mass", "design.constraint=[{response='volume', at_most=0.4}]"},
-                "nothing at all has the least mass"},
+                "the empty plate has the least mass"},
         Refused{"wrong_shorthand",
                 {"design.minimize=mass", "design.max_volume=0.4", "design.max_compliance=80.0"},
-                "only minimize = \"compliance\" has a largest volume"},
+                "only minimize = \"compliance\" allows a largest volume"},
         Refused{"missing", {"design.minimize=mass"}, "max_compliance"}),
     [](const auto& test) { return std::string(test.param.name); });
 

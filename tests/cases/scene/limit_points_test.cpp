@@ -1,4 +1,4 @@
-// Limit loads of paths of which they are known.
+// Shows that limit loads are found on paths whose limit loads are known.
 #include "cases/results/limit_points.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace flexmorph::cases {
 namespace {
 
-// A parabola has its own vertex, whatever the steps.
+// The vertex of a parabola is found exactly, whatever the steps.
 TEST(LimitLoads, OfAParabolaAreExact) {
   const std::vector<double> arc = {0, 0.1, 0.7, 1.5, 1.6};
   std::vector<double> factor;
@@ -20,8 +20,8 @@ TEST(LimitLoads, OfAParabolaAreExact) {
   EXPECT_NEAR(found[0], 3, 1e-14);
 }
 
-// exp(-s/4) sin s turns where tan s = 4, and half a turn later: both in turn, of order 3 or better
-// in steps that are unequal.
+// exp(-s/4) sin s has extremes where tan s = 4 and half a turn later. Both are found in order, with
+// an error of order 3 or better on unequal steps.
 TEST(LimitLoads, AreOfThirdOrder) {
   const auto load = [](double s) { return std::exp(-s / 4) * std::sin(s); };
   const double top = std::atan(4.0), bottom = top + std::numbers::pi;

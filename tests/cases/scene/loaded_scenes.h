@@ -32,7 +32,7 @@ inline std::string load(const std::string& type, const std::string& more) {
   return "\n[[load]]\ntype = \"" + type + "\"\n" + more + "\n";
 }
 
-/// A slender cantilever, 1 m x 0.02 m x 0.01 m, E 2e9: E I = 13.33 N m^2.
+/// A slender cantilever of 1 m x 0.02 m x 0.01 m with E = 2e9 Pa: E I = 13.33 N m^2.
 inline const std::string kCantilever = R"toml(
 [static]
 path = "load"
@@ -58,7 +58,7 @@ body = "rod"
 edge = "root"
 to = "wall"
 )toml";
-/// A plate that leaves a turning hub, at a speed or not.
+/// A plate in a rotating hub; material flows out of the hub at a constant speed.
 inline const std::string kPlate = R"toml(
 [time]
 end = 0.2

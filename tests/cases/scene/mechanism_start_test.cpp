@@ -1,5 +1,6 @@
-// Mechanisms whose drives leave freedoms start at rest in equilibrium: the crane's arm sags as a
-// beam does, its load hangs under the hook, and the joints carry all the weight there is.
+// Shows that mechanisms whose drives leave degrees of freedom start in static equilibrium: the
+// crane's arm deflects as a beam, its load hangs under the hook, and the joints carry the whole
+// weight.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +18,8 @@ constexpr double kG = 9.81, kAngle = 0.3;
 class Crane : public ::testing::Test {
  protected:
   Crane() : scene(read("telescopic_crane")), crane(build_mechanism(scene)) {
-    x = fem::start_state(crane.model, crane.growths, 0, crane.motion.start, crane.motion.placement);
+    x = fem::start_state(crane.model, crane.moving_roots, 0, crane.motion.start,
+                         crane.motion.body_poses);
     const auto integrator = fem::make_integrator(crane.model, {});
     integrator->project_velocity(x);
     integrator->make_consistent(x);
@@ -31,7 +33,8 @@ TEST_F(Crane, RigidModelHasTheSwingAsItsOnlyFreedom) {
   fem::RigidMotion rigid(rigid_kinematics(scene));
   EXPECT_EQ(rigid.degrees_of_freedom(), 1);
   EXPECT_LT(rigid.start_speed(), 1e-12);
-  // Positions of the case have three digits: the load hangs within 0.001 of 0.3 m.
+  // The positions in the case have three digits: the distance of the hanging load differs by 0.001
+  // from 0.3 m.
   EXPECT_LT(rigid.start_acceleration(), 0.005 * kG);
   EXPECT_EQ(crane.motion.start, fem::Start::settled);
 }
@@ -48,16 +51,17 @@ TEST_F(Crane, RestsAtItsStart) {
   EXPECT_NEAR(load.origin.x(), tip.origin.x(), 1e-6);
 }
 
-// Timoshenko's cantilever under the weight of tip and load 0.05 m beyond its end, and its own.
+// Reference: Timoshenko's cantilever under its own weight and the weight of tip and load, 0.05 m
+// beyond its end.
 TEST_F(Crane, ArmSagsAsABeam) {
   const double L = 0.6, EI = 7e9 * 0.01 * 1e-3 / 12, GA = 7e9 / 2.6 * 1e-3 / 1.2;
   const double P = 10.5 * kG * std::cos(kAngle), w = 2700 * 1e-3 * kG * std::cos(kAngle);
   const double sag = P * L * L * L / (3 * EI) + P * 0.05 * L * L / (2 * EI) +
                      w * std::pow(L, 4) / (8 * EI) + (P * L + 0.5 * w * L * L) / GA;
-  EXPECT_NEAR(-tip_deflection(crane.model, crane.growths.at(0), x) / sag, 1, 0.01);
+  EXPECT_NEAR(-tip_deflection(crane.model, crane.moving_roots.at(0), x) / sag, 1, 0.01);
 }
 
-// What the design problem sees: at the free end the weight of tip and load, and its moment.
+// The loads of the design problem are the weight of tip and load at the free end and its moment.
 TEST_F(Crane, LoadsOfTheArmCarryTheWeight) {
   const fem::Body& arm = crane.model.body("arm");
   const auto attached = attached_joints(scene, "arm");
@@ -72,8 +76,8 @@ TEST_F(Crane, LoadsOfTheArmCarryTheWeight) {
   EXPECT_NEAR(forces[0].moment, -weight * lever, 1e-4 * weight);
 
   const fem::EslSet set =
-      fem::equivalent_static_load(crane.model, x, crane.growths.at(0), scene.designs.at(0).grid, {},
-                                  forces, crane.motion.gravity);
+      fem::equivalent_static_load(crane.model, x, crane.moving_roots.at(0),
+                                  scene.designs.at(0).grid, {}, forces, crane.motion.gravity);
   Vec2 sum(0, 0);
   double moment = 0;  // about the middle of the free end
   const Grid& grid = scene.designs[0].grid;
@@ -85,18 +89,18 @@ TEST_F(Crane, LoadsOfTheArmCarryTheWeight) {
   const Vec2 in_the_base = fem::rotation(kAngle).transpose() * Vec2(0, -weight);
   EXPECT_NEAR((sum - in_the_base).norm(), 0, 1e-4 * weight);
   EXPECT_NEAR(moment, -weight * lever, 2e-4 * weight);
-  // Besides them the arm's own weight only: nothing moves.
+  // The only other force is the arm's own weight, because nothing moves.
   const int last = grid.nx * (grid.ny + 1);
   const Vec2 own = fem::rotation(kAngle).transpose() * Vec2(0, kG);
   EXPECT_NEAR((set.acceleration.segment<2>(2 * last) - own).norm(), 0, 1e-3 * kG);
 }
 
-// A motion goes on from there without ringing: in the first 0.02 s the drives have moved the arm by
-// 1e-5 of their travel.
+// The motion continues from this start without vibration: within the first 0.02 s the drives move
+// the arm by 1e-5 of their travel.
 TEST_F(Crane, DoesNotRing) {
   crane.motion.end = 0.02;
   double least = 1e9, most = 0, kinetic = 0;
-  fem::integrate(crane.model, crane.growths, crane.motion, [&](const fem::MotionStep& step) {
+  fem::integrate(crane.model, crane.moving_roots, crane.motion, [&](const fem::MotionStep& step) {
     least = std::min(least, step.energies.strain);
     most = std::max(most, step.energies.strain);
     kinetic = std::max(kinetic, step.energies.kinetic);
@@ -113,7 +117,9 @@ TEST(MechanismStart, WhatSetsOffIsRefusedInWords) {
           build_mechanism(scene);
         } catch (const Error& error) {
           EXPECT_EQ(error.kind(), Error::Kind::input);
-          EXPECT_NE(std::string(error.what()).find("sets off"), std::string::npos) << error.what();
+          EXPECT_NE(std::string(error.what()).find("degrees of freedom undetermined"),
+                    std::string::npos)
+              << error.what();
           throw;
         }
       },
@@ -125,13 +131,12 @@ TEST(MechanismStart, WhatSetsOffIsRefusedInWords) {
             fem::Start::prestretched);
 }
 
-// The pendulum of the crane sets off with m g l sin φ / (J + m l²), as the equations of the rigid
-// model say.
+// Reference: the initial angular acceleration of the crane's pendulum is m g l sin φ / (J + m l²).
 TEST(MechanismStart, RigidAccelerationIsThatOfAPendulum) {
   const Scene scene = read("telescopic_crane", {"gravity=[9.81, -9.81]", "time.start=rigid"});
   const double J = 10 * (2 * 0.12 * 0.12) / 12, l = 0.3, m = 10;
-  const double turn = m * kG * l / (J + m * l * l);  // the horizontal part alone accelerates it
-  // Turning is scaled by the body's radius of inertia, its centre moves by l.
+  const double turn = m * kG * l / (J + m * l * l);  // only the horizontal component accelerates it
+  // The rotation is scaled by the radius of gyration, and the centre of mass moves by l.
   EXPECT_NEAR(fem::RigidMotion(rigid_kinematics(scene)).start_acceleration() / (turn * l), 1, 0.01);
 }
 

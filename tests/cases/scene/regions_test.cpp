@@ -1,4 +1,5 @@
-// Passive regions: outlines have them exactly, cells by their samples; what is none is refused.
+// Shows that passive regions are exact in outlines and sampled in cells, and that invalid regions
+// are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +12,8 @@
 namespace flexmorph::cases {
 namespace {
 
-/// short_beam (2 x 1 m, 80 x 40 cells) with regions; nothing else, or material everywhere.
+/// short_beam (2 x 1 m, 80 x 40 cells) with passive regions; `all` is a component that covers
+/// everything.
 struct Regions {
   mmc::BodyProblem problem;
   std::vector<Component> all = {
@@ -20,7 +22,7 @@ struct Regions {
   explicit Regions(const Changes& changes)
       : problem(build_problems(read("short_beam", elsewhere(changes))).front()) {}
 
-  /// The support and the load where no test has a void.
+  /// Adds a support and a load at locations that are void in no test.
   static Changes elsewhere(Changes changes) {
     changes.insert(changes.end(), {"support.edge=\"bottom\"", "load.force.point=[1.2, 1.0]"});
     return changes;
@@ -29,14 +31,15 @@ struct Regions {
     return mmc::regions_of(problem, components, tolerance());
   }
   double tolerance() const { return mmc::kOutlineTolerance * problem.grid.dx(); }
-  double sharp(std::span<const Component> components) const {
+  double crisp(std::span<const Component> components) const {
     const Grid& g = problem.grid;
     return mmc::fractions_of(problem, components).sum() * g.dx() * g.dy();
   }
 };
 
-// Sides within t of a circle, and vertices on it: the polygon lacks less than t times the
-// circumference. Samples of an eighth of a cell along it are right or wrong by half of themselves.
+// The sides of the polygon are within t of the circle, and its vertices lie on the circle: its area
+// is too small by less than t times the circumference. On cells, the samples along the circle
+// (spacing: an eighth of a cell) have an error of at most half of their own area.
 TEST(PassiveRegions, ADiscIsRound) {
   const double r = 0.2, exact = std::numbers::pi * r * r, around = 2 * std::numbers::pi * r;
   const Regions solid({"design.solid=[{disc=[0.5, 0.5, 0.2]}]"});
@@ -45,18 +48,18 @@ TEST(PassiveRegions, ADiscIsRound) {
   EXPECT_LE(area(disc), exact);
   EXPECT_GE(area(disc), exact - solid.tolerance() * around);
   for (const Vec2& p : disc[0].outer) EXPECT_NEAR((p - Vec2(0.5, 0.5)).norm(), r, 1e-15);
-  EXPECT_NEAR(solid.sharp({}), exact, 1e-3 * exact);
+  EXPECT_NEAR(solid.crisp({}), exact, 1e-3 * exact);
 
   const Regions hole({"design.void=[{disc=[0.5, 0.5, 0.2]}]"});
   const std::vector<Region> rest = hole.exported(hole.all);
   ASSERT_EQ(rest.size(), 1u);
   ASSERT_EQ(rest[0].holes.size(), 1u);
   EXPECT_NEAR(area(rest), 2 - area(disc), 1e-14);
-  EXPECT_NEAR(hole.sharp(hole.all), 2 - exact, 1e-3 * exact);
+  EXPECT_NEAR(hole.crisp(hole.all), 2 - exact, 1e-3 * exact);
 }
 
 TEST(PassiveRegions, APolygonHasItsCorners) {
-  // A triangle, clockwise, and half a disc that the border cuts.
+  // A triangle with clockwise corners, and a disc that is cut in half by the border.
   const Changes regions = {
       "design.void=[{polygon=[0.3, 0.3, 0.3, 0.9, 1.1, 0.3]}, {disc=[2.0, 0.5, 0.25]}]"};
   const Regions r(regions);
@@ -66,21 +69,21 @@ TEST(PassiveRegions, APolygonHasItsCorners) {
   ASSERT_EQ(rest[0].holes.size(), 1u);
   EXPECT_EQ(rest[0].holes[0].size(), 3u);
   EXPECT_NEAR(area(rest), 2 - triangle - half, r.tolerance() * std::numbers::pi * 0.25);
-  EXPECT_NEAR(r.sharp(r.all), 2 - triangle - half, 1e-3);
+  EXPECT_NEAR(r.crisp(r.all), 2 - triangle - half, 1e-3);
 }
 
 TEST(PassiveRegions, CellsWithCentresInThemAreFixed) {
   const Regions r(
       {"design.void=[{disc=[0.5, 0.5, 0.2]}]", "design.solid=[{polygon=[1, 0, 2, 0, 2, 1]}]"});
   const Grid& g = r.problem.grid;
-  mmc::CellFactors factors;
+  mmc::CellScaleFactors factors;
   const VectorXd half = VectorXd::Constant(g.n_nodes(), 0.5);
   mmc::ersatz_of(r.problem).factors(half, half, factors);
   for (int i = 0; i < g.nx; ++i)
     for (int j = 0; j < g.ny; ++j) {
       const Vec2 c = g.cell_center(i, j);
       const double mass = factors.mass[g.cell(i, j)];
-      const double off = std::abs(c.y() - (c.x() - 1));  // of the triangle's long side
+      const double off = std::abs(c.y() - (c.x() - 1));  // distance from the triangle's long side
       const double from = (c - Vec2(0.5, 0.5)).norm();
       const bool free = from > 0.2 && c.y() > c.x() - 1;
       if (std::abs(from - 0.2) < 1e-3 || off < 1e-9) continue;
@@ -103,13 +106,14 @@ TEST(PassiveRegions, StripsLieAlongBothEnds) {
   }
 }
 
-// A ligament between two voids, or a slot in material: nothing that a design could change.
-TEST(PassiveRegions, NarrowPlacesOfTheirOwnAreGiven) {
+// A narrow bridge between two voids or a narrow gap in a solid region is given by the case; a
+// design cannot change it, therefore it is not reported.
+TEST(PassiveRegions, NarrowLocationsOfTheirOwnAreGiven) {
   const Regions r({"design.void=[{polygon=[0.5, 0.2, 1.5, 0.2, 1.5, 0.23, 0.5, 0.23]}]",
                    "design.solid=[{box=[0.5, 0.5, 1.5, 0.53]}]"});
-  EXPECT_TRUE(mmc::narrow_places_of(r.problem, r.exported(r.all), 0.05).empty());
-  EXPECT_FALSE(narrow_places(r.exported(r.all), mmc::domain_of(r.problem), 0.05).empty());
-  EXPECT_TRUE(mmc::narrow_places_of(r.problem, r.exported({}), 0.05).empty());
+  EXPECT_TRUE(mmc::length_scale_violations_of(r.problem, r.exported(r.all), 0.05).empty());
+  EXPECT_FALSE(length_scale_violations(r.exported(r.all), mmc::domain_of(r.problem), 0.05).empty());
+  EXPECT_TRUE(mmc::length_scale_violations_of(r.problem, r.exported({}), 0.05).empty());
 }
 
 struct Bad {
@@ -134,22 +138,26 @@ TEST_P(PassiveRegionRefused, AndSaysWhy) {
 INSTANTIATE_TEST_SUITE_P(
     Table, PassiveRegionRefused,
     ::testing::Values(
-        Bad{"none", "{cells=2}", "a region is one of `box`, `disc`, `polygon`, `strip`"},
-        Bad{"two", "{disc=[0.1, 0.1, 0.1], box=[0, 0, 1, 1]}", "a region is one of"},
+        Bad{"none", "{cells=2}",
+            "a region needs exactly one of `box`, `disc`, `polygon` and `strip`"},
+        Bad{"two", "{disc=[0.1, 0.1, 0.1], box=[0, 0, 1, 1]}", "a region needs exactly one of"},
         Bad{"crossing", "{polygon=[0, 0, 0.3, 0.3, 0.3, 0, 0, 0.3]}", "does not cross itself"},
-        Bad{"flat", "{polygon=[0.1, 0.1, 0.2, 0.1, 0.3, 0.1]}", "a polygon has an area"},
+        Bad{"flat", "{polygon=[0.1, 0.1, 0.2, 0.1, 0.3, 0.1]}",
+            "the area of a polygon is not zero"},
         Bad{"collinear", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.3, 0.3]}", "does not cross itself"},
-        Bad{"two_corners", "{polygon=[0.1, 0.1, 0.2, 0.2]}", "three corners or more"},
-        Bad{"odd", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.1, 0.3, 0.7]}", "three corners or more"},
-        Bad{"no_radius", "{disc=[0.1, 0.1, 0]}", "a radius is positive"},
-        Bad{"negative_radius", "{disc=[0.1, 0.1, -0.1]}", "a radius is positive"},
+        Bad{"two_corners", "{polygon=[0.1, 0.1, 0.2, 0.2]}", "a list of at least 6"},
+        Bad{"odd", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.1, 0.3, 0.7]}", "three or more corners"},
+        Bad{"no_radius", "{disc=[0.1, 0.1, 0]}", "a positive radius"},
+        Bad{"negative_radius", "{disc=[0.1, 0.1, -0.1]}", "a positive radius"},
         Bad{"nan", "{disc=[0.1, nan, 0.1]}", "disc"},
         Bad{"disc_of_two", "{disc=[0.1, 0.1]}", "disc"},
-        Bad{"outside", "{disc=[3, 3, 0.1]}", "a disc holds the centre of a cell; the domain is"},
-        // In the bounding box of the bracket, but not in its domain.
-        Bad{"in_the_corner", "{disc=[0.8, 0.8, 0.1]}", "a disc holds the centre of a cell"},
-        Bad{"small", "{disc=[0.1, 0.1, 1e-4]}", "a disc holds the centre of a cell"},
-        Bad{"cells_of_a_disc", "{disc=[0.1, 0.1, 0.1], cells=3}", "only a strip is as wide as"}),
+        Bad{"outside", "{disc=[3, 3, 0.1]}",
+            "a disc contains the centre of at least one cell; the domain is"},
+        // within the bounding box of the bracket, but outside of its domain
+        Bad{"in_the_corner", "{disc=[0.8, 0.8, 0.1]}",
+            "a disc contains the centre of at least one cell"},
+        Bad{"small", "{disc=[0.1, 0.1, 1e-4]}", "a disc contains the centre of at least one cell"},
+        Bad{"cells_of_a_disc", "{disc=[0.1, 0.1, 0.1], cells=3}", "this key needs a `strip`"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(PassiveRegions, AreNotSolidAndVoid) {
@@ -164,7 +172,8 @@ TEST(PassiveRegions, AreNotSolidAndVoid) {
   };
   EXPECT_TRUE(contains(both("disc=[0.85, 0.5, 0.2]"), "a region cannot be solid and void at once"));
   EXPECT_EQ(both("disc=[0.91, 0.5, 0.2]"), "");
-  EXPECT_EQ(both("polygon=[0.7, 0.3, 0.9, 0.3, 0.9, 0.7, 0.7, 0.7]"), "");  // touches
+  // the regions only touch
+  EXPECT_EQ(both("polygon=[0.7, 0.3, 0.9, 0.3, 0.9, 0.7, 0.7, 0.7]"), "");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What a run will take, against runs that were measured, and the refusal of what a machine has not.
+// Shows that resource estimates agree with measured runs, and that a run is refused if it exceeds
+// the resources of the machine.
 #include "cases/assembly/resource_estimate.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ constexpr double kMega = 1e6, kPlenty = 1e18;
 
 std::string complaint(const Scene& scene, const Machine& machine) {
   try {
-    require_room(scene, machine);
+    require_disk(scene, machine);
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), Error::Kind::input);
     return e.what();
@@ -28,7 +29,9 @@ std::string complaint(const Scene& scene, const Machine& machine) {
 struct Measured {
   const char* name;
   Changes changes;
-  double memory, disk;  ///< of run.json and of the folder [MB]; 0: the run ended before its limits
+  /// Memory in run.json and size of the run folder [MB]; 0: not compared, because the run ended
+  /// before its limits.
+  double memory, disk;
 };
 
 Changes moves_only(Changes more) {
@@ -37,7 +40,8 @@ Changes moves_only(Changes more) {
   return more;
 }
 
-// Measured with one thread, -O3 -march=native, November 2026. Twice is near enough for a warning.
+// Measured with one thread, -O3 -march=native, November 2026. A factor of two is accurate enough
+// for a warning.
 TEST(ResourceEstimate, IsThatOfMeasuredRuns) {
   const std::vector<Measured> all = {
       {"cantilever_roll_up", {}, 39.1, 0.47},
@@ -60,14 +64,14 @@ TEST(ResourceEstimate, IsThatOfMeasuredRuns) {
       {"bridge", {}, 57, 0},
   };
   for (const Measured& each : all) {
-    const Extent extent = extent_of(read(each.name, each.changes));
+    const ResourceEstimate resource_estimate = estimate_resources(read(each.name, each.changes));
     const auto near = [&](double found, double measured, const char* what) {
       if (measured == 0) return;
       EXPECT_LT(found, 2 * measured) << each.name << ": " << what;
       EXPECT_GT(found, measured / 2) << each.name << ": " << what;
     };
-    near(extent.memory_bytes() / kMega, each.memory, "memory");
-    near(extent.disk_bytes() / kMega, each.disk, "disk");
+    near(resource_estimate.memory_bytes() / kMega, each.memory, "memory");
+    near(resource_estimate.disk_bytes() / kMega, each.disk, "disk");
   }
 }
 
@@ -78,15 +82,15 @@ double seconds_of(const std::string& name, const Changes& changes) {
   return expected_seconds(scene, built ? &*built : nullptr);
 }
 
-// Expected times grow as the work does, whatever the processor: in proportion to steps and to
-// iterations, and with n unknowns from n (assembly) to n² (factors with a band; those of nested
-// dissection, n^1.5, lie between: George (1973), SIAM J. Numer. Anal. 10, 345-363).
+// Expected times grow with the work, on every processor: in proportion to steps and iterations, and
+// with n unknowns between n (assembly) and n² (banded factorization; nested dissection, n^1.5, lies
+// between: George (1973), SIAM J. Numer. Anal. 10, 345-363).
 TEST(ResourceEstimate, TimesGrowAsTheWork) {
   const auto motion = [](const std::string& step, const std::string& elements) {
     return seconds_of("plate_pendulum", {"output.motion_every=1e9", "time.step=" + step,
                                          "body.elements=[" + elements + ", " + elements + "]"});
   };
-  // The start of the program does not grow: 0.1 s of 5 s and more.
+  // The start of the program takes constant time: 0.1 s of more than 5 s.
   EXPECT_NEAR(motion("5e-6", "20") / motion("1e-5", "20"), 2, 0.02);
   const double finer = motion("1e-5", "40") / motion("1e-5", "20");
   EXPECT_GT(finer, 4);
@@ -101,18 +105,22 @@ TEST(ResourceEstimate, TimesGrowAsTheWork) {
   EXPECT_LT(smaller, 16);
 }
 
-// 2^31 steps and more are counted, not built.
+// 2^31 steps and more are counted correctly, but refused.
 TEST(ResourceEstimate, StepsAreCountedBeyondAllIntegers) {
   const Machine endless{INFINITY, INFINITY};
-  try {  // before drives are looked at
+  try {  // refused before drives are evaluated
     read("free_beam_heated", {"time.step=1e-12"});
     FAIL();
   } catch (const Error& e) {
-    EXPECT_STREQ(e.what(), "--set time.step=1e-12: 1e+12 steps; the most are 2.15e+09");
+    EXPECT_STREQ(
+        e.what(),
+        "--set time.step=1e-12: 1e+12 steps are needed; the largest number of steps is 2.15e+09");
   }
-  EXPECT_EQ(extent_of(read("free_beam_heated", {"output.motion_every=1e-11"})).steps, 1e11);
+  EXPECT_EQ(estimate_resources(read("free_beam_heated", {"output.motion_every=1e-11"})).steps,
+            1e11);
   EXPECT_EQ(complaint(read("free_beam_heated", {"output.motion_every=1e-11"}), endless),
-            "--set output.motion_every=1e-11: 1e+11 steps; the most are 2.15e+09");
+            "--set output.motion_every=1e-11: 1e+11 steps are needed; the largest number of steps "
+            "is 2.15e+09");
   EXPECT_EQ(complaint(read("free_beam_heated", {"time.step=1e-9"}), endless), "");
 }
 
@@ -121,7 +129,7 @@ TEST(ResourceEstimate, WhatAMachineHasNotIsRefusedAtTheNumberToBlame) {
     const char* name;
     Changes changes;
     Machine machine;
-    std::string place, words;
+    std::string location, words;
   };
   const std::string folder = FLEXMORPH_CASES;
   const std::string four_bar = folder + "/four_bar.toml:", beam = folder + "/short_beam.toml:";
@@ -146,20 +154,24 @@ TEST(ResourceEstimate, WhatAMachineHasNotIsRefusedAtTheNumberToBlame) {
             {"cycle.max_cycles=1"},
             {kPlenty, 1e6},
             four_bar,
-            "frames of the motion; free are 1 MB"},
+            "frames of the motion; the free disk space is 1 MB"},
            {"short_beam",
             {"design.cell=0.00125"},
             {1e9, kPlenty},
             "--set design.cell=0.00125: ",
             "for the design of 'beam'; this machine has 1 GB"},
-           {"short_beam", {}, {kPlenty, 1e6}, beam, "frames of the design of 'beam'; free are"},
+           {"short_beam",
+            {},
+            {kPlenty, 1e6},
+            beam,
+            "frames of the design of 'beam'; the free disk"},
            {"plate_pendulum",
             {"output.motion_every=1e-5"},
             {kPlenty, 1e8},
             "--set output.motion_every=1e-5: ",
             "of disk"}}) {
     const std::string found = complaint(read(row.name, row.changes), row.machine);
-    EXPECT_TRUE(starts(found, row.place)) << found;
+    EXPECT_TRUE(starts(found, row.location)) << found;
     EXPECT_TRUE(contains(found, row.words)) << found;
     EXPECT_EQ(complaint(read(row.name, row.changes), {kPlenty, kPlenty}), "") << row.name;
   }
@@ -167,9 +179,9 @@ TEST(ResourceEstimate, WhatAMachineHasNotIsRefusedAtTheNumberToBlame) {
 
 TEST(ResourceEstimate, ThisMachineHasSome) {
   const Machine here = this_machine(), nowhere = this_machine("no/such/folder/yet");
-  EXPECT_GT(here.memory, 1e8);  // less would not have built this test
+  EXPECT_GT(here.memory, 1e8);  // with less memory this test could not have been built
   EXPECT_GT(here.disk, 0);
-  EXPECT_NEAR(nowhere.disk, here.disk, 1e9);  // others write meanwhile
+  EXPECT_NEAR(nowhere.disk, here.disk, 1e9);  // other processes write meanwhile
   EXPECT_EQ(here.disk > 1e6,
             std::filesystem::space(std::filesystem::current_path()).available > 1'000'000);
 }

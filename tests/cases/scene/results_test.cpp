@@ -31,7 +31,8 @@ TEST(Series, FindsColumnsByNameAndGroup) {
   EXPECT_EQ(largest_size(table.at("tip")), 3);
 }
 
-// ∫ (2 + 3 t) dt from 0 to 2 = 10: the trapezoidal rule is exact for it, on any steps.
+// Reference: ∫ (2 + 3 t) dt from 0 to 2 = 10; the trapezoidal rule is exact for this integrand on
+// any steps.
 TEST(MotionRecord, IntegratesTheStrainEnergy) {
   MotionRecord record;
   record.table = Series({{kTimeColumn, "s", "time", ColumnGroup::abscissa},
@@ -42,25 +43,25 @@ TEST(MotionRecord, IntegratesTheStrainEnergy) {
   EXPECT_FALSE(record.amplitude("arm"));
 }
 
-/// A motion whose tip deflects as mean + size sin(2 pi t) over two periods, with an energy defect
-/// that falls to -loss of the largest energy, 1 J.
+/// Returns a motion over two periods whose tip deflection is mean + size sin(2 pi t), and whose
+/// energy error decreases to -loss; the largest energy is 1 J.
 MotionRecord swinging(double mean, double size, double loss = 0) {
   MotionRecord record;
   record.table = Series({{kTimeColumn, "s", "time", ColumnGroup::abscissa},
                          {"plate" + kDeflectionEnding, "m", "tip", ColumnGroup::deflection},
                          {kStrainColumn, "J", "strain energy", ColumnGroup::energy},
-                         {kDefectColumn, "J", "defect", ColumnGroup::energy}});
+                         {kEnergyErrorColumn, "J", "defect", ColumnGroup::energy}});
   for (int k = 0; k <= 2000; ++k) {
     const double t = 1e-3 * k;
     const double tip = mean + size * std::sin(2 * std::numbers::pi * t);
     record.table.add_row(std::vector<double>{t, tip, 1, -loss * t / 2});
   }
-  record.result.energy_defect = std::abs(loss);
+  record.result.energy_error = std::abs(loss);
   return record;
 }
 
-// Over whole periods a sine has the root mean square size / sqrt(2); the trapezoidal rule is exact
-// for it on equal steps.
+// The root mean square of a sine over whole periods is size / sqrt(2); the trapezoidal rule is
+// exact for it on equal steps.
 TEST(Variation, OfASine) {
   const MotionRecord motion = swinging(-2, 3);
   const Variation found = variation_of(motion.time(), motion.table.values[1]);
@@ -70,7 +71,7 @@ TEST(Variation, OfASine) {
   EXPECT_NEAR(found.largest, 5, 1e-12);
 }
 
-/// Number of warnings with these words.
+/// Returns the number of warnings that contain a text.
 std::ptrdiff_t count(const std::vector<Warning>& warnings, const std::string& words) {
   return std::count_if(warnings.begin(), warnings.end(),
                        [&](const Warning& w) { return w.words.find(words) != std::string::npos; });
@@ -82,7 +83,7 @@ TEST(Warnings, OfVibrationAndDissipation) {
   result.design.outcomes.emplace_back();
   result.design.outcomes[0].body = "plate";
   result.design.outcomes[0].iterations = 1;
-  result.design.outcomes[0].sharp.connectivity.connected = true;
+  result.design.outcomes[0].crisp.connectivity.connected = true;
   const auto warned = [&](double size, double loss, double uniform_size = 1) {
     result.motions.motion = swinging(0.1, size, loss);
     result.motions.uniform = swinging(0.5, uniform_size);
@@ -90,7 +91,7 @@ TEST(Warnings, OfVibrationAndDissipation) {
   };
   EXPECT_EQ(count(warned(1.06, 0), "vibrates more than with uniform material"), 1);
   EXPECT_EQ(count(warned(1.04, 0), "vibrates more"), 0);
-  // Plates at rest: what differs is rounding.
+  // For static plates the difference is due to rounding.
   EXPECT_EQ(count(warned(2e-13, 0, 1e-13), "vibrates more"), 0);
   EXPECT_EQ(count(warned(1, 0.011), "dissipates 1.1 % of the largest energy"), 1);
   EXPECT_EQ(count(warned(1, 0.009), "dissipates"), 0);
@@ -103,8 +104,8 @@ TEST(Warnings, OfVibrationAndDissipation) {
   EXPECT_FALSE(tip_variation(result.motions, "arm"));
 }
 
-// A change of the mesh is warned of by what it moves against the largest strain energy of the
-// motion, with its time and value.
+// A warning is given for mesh changes that change the strain energy by more than a fraction of the
+// largest strain energy of the motion; it contains the time and the value of the largest change.
 TEST(Warnings, OfChangesOfTheMeshThatMoveStrainEnergy) {
   const Scene scene = read("rotating_plate_v01");
   const auto warned = [&](std::vector<double> moved) {
@@ -123,11 +124,11 @@ TEST(Warnings, OfChangesOfTheMeshThatMoveStrainEnergy) {
     }
     return warnings_of(scene, result);
   };
-  EXPECT_EQ(count(warned({}), "changes of the mesh"), 0);
-  EXPECT_EQ(count(warned({0.099, -0.099}), "changes of the mesh"), 0);
+  EXPECT_EQ(count(warned({}), "mesh changes"), 0);
+  EXPECT_EQ(count(warned({0.099, -0.099}), "mesh changes"), 0);
   const std::vector<Warning> found = warned({0.05, -0.3, 0.2});
-  EXPECT_EQ(count(found, "2 of 3 changes of the mesh"), 1);
-  EXPECT_EQ(count(found, "the motion, 2 J; the worst, at t = 0.5 s in body 'plate', 0.3 J"), 1);
+  EXPECT_EQ(count(found, "2 of 3 mesh changes"), 1);
+  EXPECT_EQ(count(found, "2 J. The largest change is 0.3 J at t = 0.5 s in body 'plate'"), 1);
 }
 
 void expect_described(const std::vector<ColumnInfo>& columns, const std::string& name) {
@@ -150,10 +151,10 @@ TEST(Columns, OfAllShippedCasesAreDescribed) {
       continue;
     }
     const Mechanism mechanism = build_mechanism(scene);
-    expect_described(MotionColumns(scene, mechanism.growths, true).columns(), name);
-    // Without the energy balance its columns are left out, and no other ones.
-    const size_t fewer = MotionColumns(scene, mechanism.growths, false).columns().size();
-    EXPECT_LE(fewer, MotionColumns(scene, mechanism.growths, true).columns().size()) << name;
+    expect_described(MotionColumns(scene, mechanism.moving_roots, true).columns(), name);
+    // Without the energy balance only its columns are left out.
+    const size_t fewer = MotionColumns(scene, mechanism.moving_roots, false).columns().size();
+    EXPECT_LE(fewer, MotionColumns(scene, mechanism.moving_roots, true).columns().size()) << name;
     ++motions;
   }
   EXPECT_GT(motions, 10);
@@ -161,9 +162,9 @@ TEST(Columns, OfAllShippedCasesAreDescribed) {
 }
 
 template <class Source>
-void expect_quantities(std::span<const Quantity<Source>> table) {
+void expect_quantities(std::span<const ResultQuantity<Source>> table) {
   std::set<std::string> names;
-  for (const Quantity<Source>& q : table) {
+  for (const ResultQuantity<Source>& q : table) {
     EXPECT_TRUE(names.insert(q.name).second) << q.name << " twice";
     EXPECT_GT(std::string(q.meaning).size(), 3u) << q.name;
   }
@@ -191,7 +192,8 @@ TEST(Values, AreJsonThatEveryReaderTakes) {
   EXPECT_TRUE(json_of(nullptr).is_null());
 }
 
-// An outline with an infinite compliance has no error, no stress and names its loose load.
+// If the compliance of an outline is infinite, there is neither an error nor a stress, and the load
+// without support is named.
 TEST(Quantities, OfAnOutlineDependOnItsVerification) {
   VerifiedOutline outline;
   outline.why_not = "its statics failed";
@@ -200,7 +202,7 @@ TEST(Quantities, OfAnOutlineDependOnItsVerification) {
     for (const auto& q : outline_quantities()) found[q.name] = q.value(outline);
   };
   read_all();
-  EXPECT_EQ(std::get<std::string>(found["not_judged"]), "its statics failed");
+  EXPECT_EQ(std::get<std::string>(found["not_verified"]), "its statics failed");
   EXPECT_TRUE(std::holds_alternative<std::monostate>(found["compliance"]));
   outline.verification.emplace();
   outline.verification->compliance = INFINITY;

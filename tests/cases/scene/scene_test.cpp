@@ -1,5 +1,6 @@
-// Scenes: both shipped cases load with the numbers of Sun et al. (2018), section 4.2; defaults are
-// those of the method; every bad input is refused with one message that says where and why.
+// Shows that both rotating plates have the data of Sun et al. (2018), section 4.2, that defaults
+// are those of the method, and that every bad input is refused with one message that gives location
+// and reason.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,7 +65,7 @@ TEST_P(ShippedCase, HasTheDataOfThePaper) {
   EXPECT_EQ(d.widths.solid, 2 * 0.005);
   EXPECT_EQ(d.widths.gap, 2 * 0.0025);
   EXPECT_DOUBLE_EQ(d.erosion, (slow ? 0.25 : 0.375) * d.widths.solid);
-  // Two columns of cells under the tip mass.
+  // There are two columns of solid cells under the tip mass.
   ASSERT_EQ(d.solid.size(), 1u);
   EXPECT_NEAR(area({d.solid[0], {}}), 0.005 * 0.1, 1e-16);
   EXPECT_EQ(s.optimizer.name, "mma");
@@ -98,7 +99,7 @@ TEST(SceneReader, OptionalPartsAreAbsentUntilListed) {
   EXPECT_FALSE(more.expect.at("volume").holds(0.51));
 }
 
-// The initial components fill about the allowed volume when nothing else is said.
+// By default the initial components fill about the allowed volume.
 TEST(SceneReader, DefaultComponentsFillTheVolume) {
   std::string text;
   {
@@ -113,11 +114,11 @@ TEST(SceneReader, DefaultComponentsFillTheVolume) {
   const BodyDesign& d = s.designs[0];
   const double box = 0.025 * 0.05;
   EXPECT_DOUBLE_EQ(d.half_length, 0.5 * std::hypot(0.025, 0.05));
-  // Two bars of 2 L x 2 c in every box; where they cross is counted twice.
+  // Each box contains two bars of 2 L x 2 c; the area of their crossing is counted two times.
   EXPECT_NEAR(2 * 4 * d.half_length * d.half_thickness / box, 0.5, 1e-12);
 }
 
-/// Names of rows, each with a sentence.
+/// Returns the names of the rows and expects that each has a sentence.
 template <class Rows>
 std::set<std::string> described(const Rows& rows) {
   std::set<std::string> names;
@@ -137,13 +138,13 @@ TEST(SceneReader, KnowsTheRowsOfItsTablesAndNoOthers) {
     EXPECT_NE(message.find("'" + name + "'"), std::string::npos) << name;
   const std::string terms = complaint_of_v01({"body.terms=[\"hinge\"]"});
   const auto known = described(fem::term_rows());
-  for (const std::string& name : fem::term_names(fem::TermPlace::plane)) {
+  for (const std::string& name : fem::term_names(fem::TermDomain::plane)) {
     EXPECT_NE(terms.find("'" + name + "'"), std::string::npos) << name;
     EXPECT_TRUE(known.contains(name));
   }
 }
 
-// In the file itself the message names the line, the key and the value.
+// For an error in the file the message contains line, key and value.
 TEST(SceneReader, ErrorsInTheFileNameLineKeyAndValue) {
   std::string text;
   int line = 0, found = 0;
@@ -168,7 +169,8 @@ TEST(SceneReader, ErrorsInTheFileNameLineKeyAndValue) {
                          ":13: body.thickness = -0.002: a thickness is positive [m]");
 }
 
-// Cells of a motion with a gradient are so many of the designs' cells each way, squares or not.
+// A cell of a motion with an exact gradient consists of equally many cells of every design in each
+// direction, square or not.
 TEST(SceneReader, MergesAsManyCellsOfAllDesigns) {
   EXPECT_EQ(read("motion_platform", {"cycle.correct=first_order", "cycle.cell=0.00501"}).cycle.cell,
             0.00501);
@@ -180,11 +182,11 @@ TEST(SceneReader, MergesAsManyCellsOfAllDesigns) {
   } catch (const Error& error) {
     message = error.what();
   }
-  EXPECT_TRUE(message.ends_with("as many cells of 'light' (0.0166667 m) as of the other designs"))
-      << message;
+  EXPECT_TRUE(message.ends_with("it differs for 'light' (0.0166667 m)")) << message;
 }
 
-// Another body's lines that find their own way: when its mesh changes depends on the design.
+// If another body has free lines, the times of its mesh changes depend on the design, and there is
+// no exact gradient.
 TEST(SceneReader, RefusesGradientsWhereLinesAreFree) {
   std::string text;
   {
@@ -212,14 +214,14 @@ TEST(SceneReader, RefusesGradientsWhereLinesAreFree) {
       EXPECT_EQ(error.kind(), Error::Kind::input);
     }
     EXPECT_TRUE(
-        message.ends_with("there is no exact gradient: when meshes with free lines change "
-                          "depends on the design ([[body.line]])"))
+        message.ends_with("the motion has no exact gradient: the times at which meshes with free "
+                          "material lines change depend on the design ([[body.line]])"))
         << message;
   }
   std::remove(path.c_str());
 }
 
-// Designs that share mass minimize sums of compliances, all of them; volumes may differ.
+// All designs that share mass must minimize the sum of compliances; their volumes may differ.
 TEST(SceneReader, OnlyDesignsWithTheSameGoalShareMass) {
   std::string text;
   {
@@ -246,11 +248,13 @@ TEST(SceneReader, OnlyDesignsWithTheSameGoalShareMass) {
   };
   EXPECT_EQ(complaint_of({"design.light.max_volume=0.3"}, false), "");
   EXPECT_TRUE(complaint_of({"design.light.loads=worst"}, false)
-                  .ends_with("only with loads = \"sum\": compliances of all bodies are added"));
-  EXPECT_TRUE(complaint_of({}, true).ends_with(
-      "only with minimize = \"compliance\": what is shared is what max_volume allows"));
+                  .ends_with("\"shared_mass\" needs loads = \"sum\", because the compliances of "
+                             "all bodies are added"));
+  EXPECT_TRUE(
+      complaint_of({}, true).ends_with("\"shared_mass\" needs minimize = \"compliance\", because "
+                                       "designs share the material that max_volume allows"));
   EXPECT_TRUE(complaint_of({"design.light.coupling=none"}, false)
-                  .ends_with("no other [[design]] has \"shared_mass\" to share with"));
+                  .ends_with("\"shared_mass\" needs a second [[design]] with \"shared_mass\""));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Scenes in space: the shipped cases hold the data of their sources; every new key is accepted and
-// reaches the model.
+// Shows that the shipped cases in space have the data of their sources, and that all their keys are
+// accepted and change the model.
 #include <gtest/gtest.h>
 
 #include "cases/assembly/build.h"
@@ -9,7 +9,7 @@
 namespace flexmorph::cases {
 namespace {
 
-/// Constraint rows of the built scene.
+/// Returns the number of constraint rows of the model of a scene.
 int rows(const Scene& scene) { return build_mechanism(scene).model.n_constraints(); }
 
 TEST(SpaceScene, PendulumIsThatOfThePaper) {
@@ -24,12 +24,13 @@ TEST(SpaceScene, PendulumIsThatOfThePaper) {
   EXPECT_EQ(plate.poisson_ratio, 0.3);
   EXPECT_EQ(plate.elements, (std::array{8, 8}));
   EXPECT_EQ(*s.gravity, Vec3(0, 0, -9.81));
-  EXPECT_EQ(s.time.start, Start::rigid);  // nothing drives it
+  EXPECT_EQ(s.time.start, Start::rigid);  // the motion has no drive
   const Mechanism m = build_mechanism(s);
   EXPECT_EQ(m.model.n_dofs(), 3 * 4 * 81);
   EXPECT_EQ(m.model.n_constraints(), 3);
-  EXPECT_TRUE(m.growths.empty());
-  // The rectangle begins at its pinned corner: its weight's potential is zero in the plane z = 0.
+  EXPECT_TRUE(m.moving_roots.empty());
+  // The rectangle begins at its pinned corner; the potential of its weight is zero in the plane z =
+  // 0.
   const VectorXd q = m.model.reference().q;
   EXPECT_EQ(q.minCoeff(), 0);
 }
@@ -44,8 +45,9 @@ TEST(SpaceScene, PlanarScenesKnowNothingOfIt) {
 }
 
 TEST(SpaceScene, EdgesOfABodyAreHeldTogether) {
-  // Four clamped edges of 8 x 8 elements: every node of the boundary holds r, both slopes but the
-  // length of the one across, and of r_mn likewise. Corners, which belong to two edges, once.
+  // Clamped edges of a plate of 8 x 8 elements: each node of an edge has constraints for r, for
+  // both slopes except the length of the one across the edge, and for r_mn in the same form.
+  // Corners belong to two edges but are constrained only once.
   const std::string twist = "square_plate_twist";
   const auto held = [&](const std::string& joints) {
     return rows(read(twist, {"joint=[" + joints + "]"}));
@@ -63,7 +65,8 @@ TEST(SpaceScene, EdgesOfABodyAreHeldTogether) {
 }
 
 TEST(SpaceScene, EveryLoadReachesTheModel) {
-  // Generalized forces on positions add up to the resultant: N sums to one.
+  // Generalized forces on positions sum up to the resultant, because the shape functions N sum up
+  // to one.
   const auto resultant = [](const std::string& load) {
     const Scene s = read("square_plate_twist", {"load=[{body='plate', " + load + "}]"});
     Mechanism m = build_mechanism(s);
@@ -86,7 +89,7 @@ TEST(SpaceScene, EveryLoadReachesTheModel) {
   EXPECT_LT(resultant("type='edge_moment', edge='free_end', moment=5").norm(), 1e-12);
 }
 
-// A rigid turn about the edge by a small angle: the work is that of the moment.
+// Under a small rigid rotation about the edge the virtual work of the forces is that of the moment.
 TEST(SpaceScene, EdgeMomentsReachTheModel) {
   const Scene s = read("square_plate_twist",
                        {"load=[{body='plate', type='edge_moment', edge='free_end', moment=5}]"});
@@ -101,39 +104,40 @@ TEST(SpaceScene, EdgeMomentsReachTheModel) {
   EXPECT_NEAR(std::abs(work), 5 * s.bodies[0].width, 1e-12);
 }
 
-TEST(SpaceScene, FreeLinesAndSleevesReachTheModel) {
+TEST(SpaceScene, EulerianLinesAndSleevesReachTheModel) {
   const Scene s = read("elastic_sleeve");
   ASSERT_EQ(s.bodies[0].lines.size(), 1u);
   EXPECT_EQ(*s.bodies[0].lines[0].at, 0.42);
   EXPECT_EQ(s.joints[0].mode, fem::WeldMode::direction);
   const Mechanism m = build_mechanism(s);
   EXPECT_EQ(m.model.bodies()[0].element->n_scalars(), 1);
-  // Two nodes with r, r_n; z of r_m, r_mn; and both across the axis.
+  // Two nodes have constraints for r and r_n, for z of r_m and r_mn, and for both across the axis.
   EXPECT_EQ(m.model.n_constraints(), 2 * (3 + 3 + 2 + 2));
   const fem::ReferencePose pose = start_pose(s, s.bodies[0]);
-  EXPECT_EQ(pose.place({0.42, 0.01}), Vec3(0, 0.01, 0));
+  EXPECT_EQ(pose.location({0.42, 0.01}), Vec3(0, 0.01, 0));
 
-  // Turned and shifted: the body starts where the sleeve is.
+  // If the sleeve is rotated and shifted, the body starts at the sleeve.
   const Scene turned = read("elastic_sleeve", {"joint.0.position=[1, 2]", "joint.0.angle=0.5"});
   Mechanism other = build_mechanism(turned);
-  const fem::State x = fem::start_state(other.model, other.growths, 0, fem::Start::rigid);
+  const fem::State x = fem::start_state(other.model, other.moving_roots, 0, fem::Start::rigid);
   fem::Constraints c;
   other.model.constraints(x, c);
   EXPECT_LT(c.value.lpNorm<Eigen::Infinity>(), 1e-15);
 
-  // A driven line takes the strip along: rows of the drive and of the sleeve hold at the start.
+  // A driven line carries the strip along; the constraints of drive and sleeve are satisfied at the
+  // start.
   const Scene driven =
       read("elastic_sleeve", {"joint=[{type='sleeve', body='strip', edge='line 3', angle=0.3}, "
                               "{type='line_drive', body='strip', line=3, speed=-0.2}]"});
   Mechanism fed = build_mechanism(driven);
-  const fem::State y = fem::start_state(fed.model, fed.growths, 0, fem::Start::rigid);
+  const fem::State y = fem::start_state(fed.model, fed.moving_roots, 0, fem::Start::rigid);
   fem::Constraints d;
   fed.model.constraints(y, d);
   VectorXd rate = d.rate;
   for (const auto& entry : d.jacobian) rate[entry.row()] += entry.value() * y.v[entry.col()];
   EXPECT_EQ(rate.size(), 21);
   EXPECT_LT(d.value.lpNorm<Eigen::Infinity>() + rate.lpNorm<Eigen::Infinity>(), 1e-15);
-  EXPECT_NEAR(y.v[0], 0.2 * std::cos(0.3), 1e-15);  // all material comes out at 0.2 m/s
+  EXPECT_NEAR(y.v[0], 0.2 * std::cos(0.3), 1e-15);  // all material leaves at 0.2 m/s
   EXPECT_NEAR(y.v[1], 0.2 * std::sin(0.3), 1e-15);
 }
 
@@ -143,11 +147,11 @@ TEST(SpaceScene, LimitsOfAFreeRootLineReachTheModel) {
   const Scene s =
       read("elastic_sleeve", {"body.line=[{index=0, free=true, max_length=0.2}]", kRootSleeve});
   const Mechanism m = build_mechanism(s);
-  EXPECT_EQ(m.growths.at(0).max_length, 0.2);
-  EXPECT_NEAR(m.growths.at(0).min_length, 0.06, 1e-15);
+  EXPECT_EQ(m.moving_roots.at(0).max_length, 0.2);
+  EXPECT_NEAR(m.moving_roots.at(0).min_length, 0.06, 1e-15);
   const Mechanism never =
       build_mechanism(read("elastic_sleeve", {"body.line=[{index=0, free=true}]", kRootSleeve}));
-  EXPECT_TRUE(std::isinf(never.growths.at(0).max_length));
+  EXPECT_TRUE(std::isinf(never.moving_roots.at(0).max_length));
 }
 
 TEST(SpaceScene, AnalysisAndIntegratorAreRead) {
@@ -170,9 +174,10 @@ TEST(SpaceScene, AnalysisAndIntegratorAreRead) {
   EXPECT_EQ(read("deploying_plate").observed.at(0).point, Vec2(0.9, 0.05));
 }
 
-// A new line leaves the plate as it is, before forces are balanced. Its bending energy is rational
-// in the unknowns: what it seems to jump by is the error of its quadrature, and goes with more
-// points. (Assumed membrane strains are interpolated anew, so their energy does change.)
+// An insertion of a line does not change the shape of the plate; energies are compared before
+// forces are balanced. The bending energy is a rational function of the unknowns: its apparent jump
+// is the error of its quadrature, which vanishes with more points. (Assumed membrane strains are
+// interpolated again, therefore their energy does change.)
 TEST(NewLines, DoNotChangeTheEnergyButForItsQuadrature) {
   const auto jump = [](const char* points) {
     const Scene scene = read("deploying_plate", {"time.end=0.1", "body.flow.mesh=split",
@@ -180,7 +185,7 @@ TEST(NewLines, DoNotChangeTheEnergyButForItsQuadrature) {
                                                  std::string("body.bending_points=") + points});
     Mechanism m = build_mechanism(scene);
     fem::State x =
-        fem::integrate(m.model, m.growths, m.motion, [](const fem::MotionStep&) {}).final;
+        fem::integrate(m.model, m.moving_roots, m.motion, [](const fem::MotionStep&) {}).final;
     const double before = m.model.energies(x).strain;
     fem::change_mesh(m.model, m.model.bodies().front(), fem::MeshChange::insertion, x);
     return std::abs(m.model.energies(x).strain - before) / before;

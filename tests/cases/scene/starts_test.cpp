@@ -1,12 +1,12 @@
-// Given velocities of mechanisms are facts: kept to round-off, or refused with the joints that
-// contradict them; what nobody gives has the least kinetic energy, and what is free keeps its
-// momentum.
+// Shows that given velocities of mechanisms are kept to round-off or refused with the joints that
+// contradict them, that velocities which are not given have the least kinetic energy, and that free
+// mechanisms keep their momentum.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "cases/assembly/build.h"
-#include "fem/dynamics/starts/carrier.h"
+#include "fem/dynamics/starts/driven_frame.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::cases {
@@ -18,7 +18,7 @@ std::string rigid(const std::string& name, const std::string& more) {
 std::string joint(const std::string& type, const std::string& more) {
   return "\n[[joint]]\ntype = \"" + type + "\"\n" + more + "\n";
 }
-/// From one rigid body's point to another's; the ground is "ground".
+/// Returns a revolute joint between points of two rigid bodies; the ground is "ground".
 std::string pin(const std::string& a, const std::string& at_a, const std::string& b,
                 const std::string& at_b) {
   return joint("revolute",
@@ -52,7 +52,7 @@ const std::string kGrowing =
     "length = 0.5\n[body.flow]\nspeed = 0.2\nmax_length = 0.2\nmin_length = 0.05";
 const std::string kPendulum = pin("ground", "[0.0, 0.0]", "a", "[-0.2, 0.0]");
 const std::string kTwoLinks = kPendulum + pin("a", "[0.2, 0.0]", "b", "[-0.2, 0.0]");
-/// A parallelogram of cranks of 0.2 m, pivots 1 m apart.
+/// A parallelogram with cranks of 0.2 m and pivots 1 m apart.
 const std::string kCranks = rigid("a", "position = [0.0, 0.2]\nangle = 1.5707963267948966\nSPEED") +
                             rigid("b", "position = [1.0, 0.2]\nangle = 1.5707963267948966") +
                             pin("ground", "[0.0, 0.0]", "a", "[-0.2, 0.0]") +
@@ -64,8 +64,8 @@ const std::string kCoupler = rigid("rod", "position = [0.5, 0.4]") +
 struct Case {
   const char* name;
   std::string text;
-  bool free = false;              ///< keeps its momentum
-  const char* refused = nullptr;  ///< words of the refusal
+  bool free = false;              ///< True if momentum is conserved.
+  const char* refused = nullptr;  ///< Text of the refusal.
 };
 
 std::string with(std::string text, const std::string& speed) {
@@ -130,7 +130,7 @@ const Case kCases[] = {
          joint("revolute", "a = \"a\"\npoint_a = [0.2, 0.0]\nb = \"rod\"\npoint_b = [0.0, 0.0]") +
          joint("revolute", "a = \"b\"\npoint_a = [0.2, 0.0]\nb = \"rod\"\npoint_b = [1.0, 0.0]")},
     {"against_a_pin", rigid("a", "position = [0.2, 0.0]\nvelocity = [1.0, 0.0]") + kPendulum, false,
-     "rigid_body.a.velocity = [1, 0]: contradicts joint "},
+     "rigid_body.a.velocity = [1, 0]: this contradicts joint "},
     {"against_a_pin_by_all_of_it",
      rigid("a", "position = [0.2, 0.0]\nvelocity = [0.5, 0.0]") + kPendulum, false, " by 0.5 m/s"},
     {"against_a_drive",
@@ -147,7 +147,7 @@ const Case kCases[] = {
      rigid("a", "position = [0.2, 0.0]\nangular_velocity = 0.0") + kPendulum +
          "\n[[drive]]\nname = \"turn\"\nformula = \"2*t\"\n" +
          joint("angle_drive", "name = \"motor\"\nb = \"a\"\nangle = \"turn\""),
-     false, "angular_velocity = 0: contradicts"},
+     false, "angular_velocity = 0: this contradicts"},
 };
 
 Scene scene_of(const std::string& text) {
@@ -157,7 +157,7 @@ Scene scene_of(const std::string& text) {
 }
 
 fem::State start_of(Mechanism& m) {
-  fem::State x = fem::start_state(m.model, m.growths, 0, m.motion.start, m.motion.placement);
+  fem::State x = fem::start_state(m.model, m.moving_roots, 0, m.motion.start, m.motion.body_poses);
   const auto integrator = fem::make_integrator(m.model, {});
   integrator->project_velocity(x);
   integrator->make_consistent(x);
@@ -219,10 +219,10 @@ TEST_P(FreeMechanisms, KeepTheirMomentum) {
     m.motion.integrator = integrator;
     Vec2 first(0, 0);
     double worst = 0, largest = 0;
-    fem::integrate(m.model, m.growths, m.motion, [&](const fem::MotionStep& step) {
+    fem::integrate(m.model, m.moving_roots, m.motion, [&](const fem::MotionStep& step) {
       const Vec2 now = fem::momentum(m.model, step.x);
       if (step.x.t == 0) first = now;
-      largest = std::max(largest, std::sqrt(step.energies.kinetic));  // of unit masses: m v
+      largest = std::max(largest, std::sqrt(step.energies.kinetic));  // for unit masses, m v
       worst = std::max(worst, (now - first).norm());
     });
     EXPECT_LT(worst, 1e-10 * std::max(first.norm(), largest)) << integrator;
@@ -235,8 +235,8 @@ INSTANTIATE_TEST_SUITE_P(Mechanisms, GivenVelocities, ::testing::ValuesIn(kCases
 INSTANTIATE_TEST_SUITE_P(Mechanisms, FreeMechanisms, ::testing::ValuesIn(free_ones()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-// Kinetic energy of two links of mass m, half-length a, inertia J, in line: the first turns by w₁,
-// the second by w₂ = 3; of all w₁ the one that makes it least,
+// Reference: two links of mass m, half-length a and inertia J in line; the first rotates with w₁,
+// the second with the given w₂ = 3. The kinetic energy T is least for
 //   T = ½ (J + m a²) w₁² + ½ m (2a w₁ + a w₂)² + ½ J w₂²,   w₁ = -2 m a² w₂ / (J + 5 m a²).
 TEST(Starts, WhatIsNotGivenHasTheLeastKineticEnergy) {
   const Scene scene = scene_of(kCases[10].text);
@@ -248,7 +248,8 @@ TEST(Starts, WhatIsNotGivenHasTheLeastKineticEnergy) {
               -2 * mass * a * a * 3 / (J + 5 * mass * a * a), 1e-7);
 }
 
-// A hub and two plates turn as one body: T = ½ J ω², J about the hub by Steiner's theorem.
+// A hub and two plates rotate as one body. Reference: T = ½ J ω² with J about the hub by Steiner's
+// theorem.
 TEST(Starts, PlatesTurnWithTheirHub) {
   const Scene scene = scene_of(kCases[4].text);
   Mechanism m = build_mechanism(scene);

@@ -1,6 +1,6 @@
-// Plates at rest: the shipped cases load and build with the data of the literature; forces spread
-// over a place add up to what the case says; every bad input is refused with one message that says
-// where and why.
+// Shows that static plates of the shipped cases have the data of the literature, that forces
+// distributed over a location have the given resultant, and that every bad input is refused with
+// one message that gives location and reason.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,10 +39,10 @@ TEST(StaticScene, ShortBeamIsThatOfTheLiterature) {
   EXPECT_EQ(mmc::allowed_volume(d.goal), 0.4);
   const mmc::BodyProblem problem = build_problems(s).front();
   EXPECT_EQ(problem.design.n_components(), 16);
-  EXPECT_EQ(problem.design.n_variables(), 56);  // of its lower half
-  EXPECT_EQ(problem.places.size(), 2u);
-  // The full plate under its load: 80 x 40 bilinear cells; beam theory with shear, up to the
-  // clamped end of a beam twice as long as high.
+  EXPECT_EQ(problem.design.n_variables(), 56);  // variables of the lower half
+  EXPECT_EQ(problem.locations.size(), 2u);
+  // Reference for the full plate under its load (80 x 40 bilinear cells): beam theory with shear
+  // for a cantilever twice as long as high, F = 1.
   const auto loads = build_static_loads(s, problem);
   const VectorXd full = VectorXd::Ones(d.grid.n_cells());
   const double beam = 8 / (3 * (1. / 12)) + 2 / (5. / 6 / 2.6);
@@ -53,16 +53,17 @@ TEST(StaticScene, BridgeHasThreeLoadsOfWhichTheWorstCounts) {
   const Scene s = read("bridge");
   const mmc::BodyProblem problem = build_problems(s).front();
   EXPECT_EQ(problem.goal.objective, &mmc::kComplianceWorst);
-  EXPECT_EQ(problem.places.size(), 5u);
+  EXPECT_EQ(problem.locations.size(), 5u);
   const auto loads = build_static_loads(s, problem);
   ASSERT_EQ(loads->n_loads(), 3);
   const VectorXd full = VectorXd::Ones(problem.grid.n_cells());
   const VectorXd C = loads->individual(full, full);
-  EXPECT_NEAR(C[0], C[2], 1e-9 * C[0]);  // symmetry
+  EXPECT_NEAR(C[0], C[2], 1e-9 * C[0]);  // by symmetry
   EXPECT_GT(C[1], C[0]);
 }
 
-// Supports, loads and domain decide; a load that points the other way is the image of its opposite.
+// Supports, loads and domain must be symmetric; a load of opposite direction is the image of a
+// load.
 TEST(StaticScene, IsSymmetricWhereEverythingIs) {
   const auto images = [](const std::string& name, const std::vector<std::string>& changes) {
     return build_problems(read(name, changes)).front().design.n_images();
@@ -82,7 +83,8 @@ TEST(StaticScene, IsSymmetricWhereEverythingIs) {
   EXPECT_NE(start(0.1).x(), start(0).x());
 }
 
-/// Area that one of two regions covers alone, in parts of the first one's.
+/// Returns the area that only one of two region sets covers, as a fraction of the area of the
+/// first.
 double difference(std::span<const Region> a, std::span<const Region> b) {
   double common = 0;
   for (const Region& piece : a)
@@ -93,8 +95,8 @@ double difference(std::span<const Region> a, std::span<const Region> b) {
   return (area(a) + area(b) - 2 * common) / area(a);
 }
 
-// What is exported of a symmetric design is its own mirror image. The start is disturbed, and
-// nothing else of it is symmetric.
+// The exported outline of a symmetric design is its own mirror image. The start is disturbed,
+// therefore it has no other symmetry.
 TEST(StaticScene, ExportsOfSymmetricDesignsAreMirrorImages) {
   for (const std::string wanted : {"x", "y", "both"}) {
     const mmc::BodyProblem problem =
@@ -124,7 +126,7 @@ TEST(StaticScene, ExportsOfSymmetricDesignsAreMirrorImages) {
   }
 }
 
-// A symmetry that is asked for holds, or the message says what is not symmetric.
+// A symmetry that the case requests is established, or the message names what is not symmetric.
 TEST(StaticScene, SymmetryThatIsAskedForIsThereOrRefused) {
   const auto symmetry = [](const std::string& name, const Changes& changes) {
     return to_string(build_problems(read(name, changes)).front().design.symmetry());
@@ -138,18 +140,18 @@ TEST(StaticScene, SymmetryThatIsAskedForIsThereOrRefused) {
   EXPECT_EQ(symmetry("rotating_plate_v01", {}), "none");
   const Changes low = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'"};
   EXPECT_TRUE(contains(complaint("short_beam", low),
-                       "the set of loads is not symmetric to the line y = 0.5 m"));
+                       "the set of loads is not symmetric about the line y = 0.5 m"));
   const Changes enforced = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'",
                             "design.symmetry_despite_loads=true"};
   EXPECT_EQ(symmetry("short_beam", enforced), "y");
   for (const auto& [changes, said] : std::vector<std::pair<Changes, std::string>>{
-           {{"design.symmetry='x'"}, "the supports are not symmetric to the line x = 1 m"},
+           {{"design.symmetry='x'"}, "the supports are not symmetric about the line x = 1 m"},
            {{"design.symmetry='both'"}, "the supports are"},
            {{"design.symmetry='y'", "design.solid=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
             "the solid regions are"},
            {{"design.symmetry='y'", "design.void=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
             "the void regions are"},
-           {{"design.symmetry_despite_loads=true"}, "it enforces"}}) {
+           {{"design.symmetry_despite_loads=true"}, "this key needs symmetry"}}) {
     const std::string message = complaint("short_beam", changes);
     EXPECT_TRUE(contains(message, said)) << message;
     EXPECT_TRUE(contains(message, "design.symmetry")) << message;
@@ -164,7 +166,8 @@ TEST(StaticScene, SymmetryThatIsAskedForIsThereOrRefused) {
   }
 }
 
-// Weight acts with every load, is a load by itself, and is symmetric across its own direction only.
+// Weight acts together with every load, is a load of its own, and is symmetric only across its own
+// direction.
 TEST(StaticScene, HasItsOwnWeight) {
   const std::vector<std::string> weight = {"gravity=[0.0, -10.0]", "domain.density=2.0"};
   const auto read_with = [&](std::vector<std::string> changes) {
@@ -173,7 +176,7 @@ TEST(StaticScene, HasItsOwnWeight) {
   };
   const Scene s = read_with({});
   const mmc::BodyProblem problem = build_problems(s).front();
-  EXPECT_EQ(problem.design.n_images(), 1u);  // the load points along the weight
+  EXPECT_EQ(problem.design.n_images(), 1u);  // the load is parallel to the weight
   const VectorXd full = VectorXd::Ones(problem.grid.n_cells());
   const VectorXd with = build_static_loads(s, problem)->displacement(full, full, 0),
                  force =
@@ -182,13 +185,14 @@ TEST(StaticScene, HasItsOwnWeight) {
   ASSERT_EQ(alone.domain->loads.size(), 1u);
   const VectorXd own = build_static_loads(alone, problem)->displacement(full, full, 0);
   EXPECT_LT((with - force - own).norm(), 1e-12 * with.norm());
-  // Beam theory: q L^4 / (8 E I) with q = rho g A, and the shear of q L^2 / (2 kappa G A).
+  // Reference: beam theory, q L^4 / (8 E I) with q = rho g A, and the shear deflection q L^2 / (2
+  // kappa G A).
   const double q = 2 * 10 * 1, beam = q * 16 / (8 * (1. / 12)) + q * 4 / (2 * (5. / 6 / 2.6));
   const int tip = problem.grid.node(problem.grid.nx, problem.grid.ny / 2);
   EXPECT_NEAR(-own[2 * tip + 1], beam, 0.05 * beam);
   EXPECT_EQ(build_problems(read_with({"gravity=[-10.0, 0.0]", "load="})).front().design.n_images(),
             2u);
-  EXPECT_THROW(read("short_beam", {"gravity=[0.0, -10.0]"}), Error);  // no density
+  EXPECT_THROW(read("short_beam", {"gravity=[0.0, -10.0]"}), Error);  // the density is missing
   EXPECT_THROW(read_with({"load=", "gravity=[0.0, 0.0]"}), Error);
 }
 
@@ -237,9 +241,9 @@ TEST_P(StaticSceneRefuses, AndSaysWhy) {
 INSTANTIATE_TEST_SUITE_P(
     Table, StaticSceneRefuses,
     ::testing::Values(
-        Bad{"motion", {"time.end=1"}, "rests"},
-        Bad{"size", {"domain.size=[2.0, -1.0]"}, "a length, a height"},
-        Bad{"both", {"domain.polygon=[0.0, 0.0, 1.0, 0.0, 1.0, 1.0]"}, "either a `size`"},
+        Bad{"motion", {"time.end=1"}, "is static"},
+        Bad{"size", {"domain.size=[2.0, -1.0]"}, "a length or a height"},
+        Bad{"both", {"domain.polygon=[0.0, 0.0, 1.0, 0.0, 1.0, 1.0]"}, "exactly one of `size`"},
         Bad{"edge", {"support.edge=\"rear\""}, "an edge"},
         Bad{"axis", {"support.fix=[\"z\"]"}, "a direction"},
         Bad{"goal", {"design.minimize=\"weight\""}, "an objective"},
@@ -248,11 +252,12 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"start", {"design.start=\"nowhere.csv\""}, "nowhere.csv: cannot be read"},
         Bad{"far_load",
             {"load.force.point=[9.0, 0.5]", "load.force.edge=", "load.force.box="},
-            "load.force.point=[9.0, 0.5]: a place lies in the domain"},
+            "load.force.point=[9.0, 0.5]: a location lies in the domain"},
         Bad{"unknown", {"domain.depth=1.0"}, "depth"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-// Inside of the bounding box, but not of the domain: the mesh finds out, and the file is named.
+// The load lies within the bounding box, but not within the domain: this is detected on the mesh,
+// and the key is named.
 TEST(StaticScene, LoadsOutsideOfAPolygonAreRefusedWhereTheyStand) {
   const std::string said = complaint(
       "l_bracket", {"load.force.point=[0.9, 0.9]", "load.force.edge=", "load.force.box="});
@@ -262,13 +267,13 @@ TEST(StaticScene, LoadsOutsideOfAPolygonAreRefusedWhereTheyStand) {
 TEST(StaticScene, NamesOfLoadsAreUnlike) {
   EXPECT_TRUE(contains(complaint("bridge", {"load.1.name=left"}),
                        "--set load.1.name=left: there is another load 'left'"));
-  // Also when one has it by its number.
+  // A default name made from the number of the load counts, too.
   EXPECT_TRUE(contains(complaint("bridge", {"load.0.name=load_2", "load.1.name="}),
                        "another load 'load_2'"));
   EXPECT_EQ(complaint("bridge", {"load.0.name=one", "load.1.name=two"}), "");
 }
 
-// What is rigid has nothing to measure, and is said to be so.
+// A rigid body cannot be measured or designed; the message says that it is rigid.
 TEST(FlexibleBodies, AreNotRigidOnes) {
   for (const char* change : {"measure=[{body=\"crank\", quantities=[\"end_velocity\"]}]",
                              "observe.body=crank", "design.body=crank"}) {
@@ -278,8 +283,8 @@ TEST(FlexibleBodies, AreNotRigidOnes) {
     } catch (const Error& e) {
       said = e.what();
     }
-    EXPECT_TRUE(contains(said, "that is a rigid body; ")) << change;
-    EXPECT_TRUE(contains(said, " is a plate or beam, a [[body]]")) << change;
+    EXPECT_TRUE(contains(said, "this is a rigid body; ")) << change;
+    EXPECT_TRUE(contains(said, " is a plate or beam ([[body]])")) << change;
     EXPECT_TRUE(starts(said, "--set ")) << change;
   }
 }

@@ -1,6 +1,6 @@
-// A steady start from case files: levers and masses hang in their springs, however far these are
-// from their free lengths; a plate that grows out of its hub does not swing; what cannot start
-// steady is refused in words.
+// Shows that a steady start of case files is correct: levers and masses are in equilibrium with
+// their springs, far from the free lengths; a plate that grows out of its hub does not swing; and
+// cases without a steady start are refused with a reason.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "cases/assembly/build.h"
 #include "cases/results/motion_columns.h"
 #include "fem/dynamics/motion.h"
-#include "fem/dynamics/starts/carrier.h"
+#include "fem/dynamics/starts/driven_frame.h"
 #include "fem/dynamics/starts/start_parts.h"
 #include "fem/solve/statics.h"
 #include "tests/cases/scenes.h"
@@ -35,7 +35,7 @@ std::string lever(double rest_angle, double stiffness = 50) {
          std::to_string(stiffness) + "\nrest_angle = " + std::to_string(rest_angle) + "\n";
 }
 
-/// k (θ - θ_0) + m g l cos θ = 0 by Newton's method in one unknown, near θ_0.
+/// Solves k (θ - θ_0) + m g l cos θ = 0 by Newton's method in one unknown, starting from θ_0.
 double angle_of_lever(double rest_angle, double stiffness = 50) {
   double angle = rest_angle;
   for (int i = 0; i < 50; ++i)
@@ -45,7 +45,7 @@ double angle_of_lever(double rest_angle, double stiffness = 50) {
 }
 
 fem::State start_of(Mechanism& m) {
-  return fem::start_state(m.model, m.growths, 0, m.motion.start, m.motion.placement);
+  return fem::start_state(m.model, m.moving_roots, 0, m.motion.start, m.motion.body_poses);
 }
 
 TEST(SteadyStart, LeverHangsInItsSpring) {
@@ -55,8 +55,8 @@ TEST(SteadyStart, LeverHangsInItsSpring) {
     const fem::State x = start_of(m);
     EXPECT_NEAR(fem::frame_of(m.model.body("lever"), x).angle, angle_of_lever(rest), 1e-9) << rest;
     EXPECT_EQ(x.v.norm(), 0);
-    // It stays there.
-    const fem::MotionResult end = fem::integrate(m.model, m.growths, m.motion, [](auto&) {});
+    // The lever stays there.
+    const fem::MotionResult end = fem::integrate(m.model, m.moving_roots, m.motion, [](auto&) {});
     EXPECT_NEAR(fem::frame_of(m.model.body("lever"), end.final).angle, angle_of_lever(rest), 1e-9);
   }
 }
@@ -64,14 +64,15 @@ TEST(SteadyStart, LeverHangsInItsSpring) {
 TEST(SteadyStart, PreloadOfStaticsComesInSteps) {
   const Scene scene = scene_of("gravity = [0.0, -9.81]\n[static]\nsteps = 10\n" + lever(-3));
   Mechanism m = build_mechanism(scene);
-  fem::State x = fem::start_state(m.model, m.growths, 0, fem::Start::rigid, m.motion.placement);
+  fem::State x =
+      fem::start_state(m.model, m.moving_roots, 0, fem::Start::rigid, m.motion.body_poses);
   EXPECT_TRUE(fem::solve_static(m.model, x, {}).completed);
   const double angle = fem::frame_of(m.model.body("lever"), x).angle;
   EXPECT_NEAR(angle, -2.904641101904, 1e-10);
   EXPECT_NEAR(angle, angle_of_lever(-3), 1e-10);
 }
 
-// m g = k (l - l_0), from a spring that is wound far beyond its free length.
+// Reference: m g = k (l - l_0). The spring starts far from its free length.
 TEST(SteadyStart, MassHangsInALinearSpring) {
   Mechanism m = build_mechanism(scene_of(
       timed("steady") +
@@ -100,8 +101,8 @@ TEST(SteadyStart, WhatItDoesNotFitIsRefused) {
                      "\n[[rigid_body]]\nname = \"a\"\nmass = 1.0\nsize = [0.4, 0.1]\nposition = "
                      "[0.2, 0.0]\nangular_velocity = 4.0\n[[joint]]\ntype = \"revolute\"\nb = "
                      "\"a\"\npoint_b = [-0.2, 0.0]\n",
-                 "leave 1 freedoms");
-  // A body that falls along its slide has no equilibrium.
+                 "leave 1 degrees of freedom");
+  // A body that falls along its slider has no equilibrium.
   Mechanism m = build_mechanism(
       scene_of(timed("steady") +
                "\n[[rigid_body]]\nname = \"a\"\nmass = 1.0\nsize = [0.4, 0.1]\n[[joint]]\ntype = "
@@ -110,21 +111,24 @@ TEST(SteadyStart, WhatItDoesNotFitIsRefused) {
   EXPECT_THROW(start_of(m), Error);
 }
 
-// The growing plate keeps to its quasi-static deflection, uniform material on the elements of the
-// case; prestretched it starts without it, and swings about it.
+// With a steady start the growing plate (uniform material on the elements of the case) follows its
+// quasi-static deflection. With a prestretched start it begins without this deflection and swings
+// about it.
 TEST(SteadyStart, GrowingPlateDoesNotSwing) {
   const auto swing = [](const std::string& start) {
     Mechanism m = build_mechanism(read("rotating_plate_v01", {"time.start=" + start}));
     Mechanism still = build_mechanism(read("rotating_plate_v01"));
     double worst = 0, largest = 0;
     int n = 0;
-    fem::integrate(m.model, m.growths, m.motion, [&](const fem::MotionStep& step) {
+    fem::integrate(m.model, m.moving_roots, m.motion, [&](const fem::MotionStep& step) {
       if (n++ % 10 != 0) return;
-      const auto there = fem::start::steady_equilibrium(still.model, still.growths, {}, step.x.t);
-      const double quasi_static = tip_deflection(still.model, still.growths[0], there.strained);
-      worst = std::max(worst,
-                       std::abs(tip_deflection(step.model, m.growths[0], step.x) - quasi_static) /
-                           std::abs(quasi_static));
+      const auto there =
+          fem::start::steady_equilibrium(still.model, still.moving_roots, {}, step.x.t);
+      const double quasi_static =
+          tip_deflection(still.model, still.moving_roots[0], there.strained);
+      worst = std::max(
+          worst, std::abs(tip_deflection(step.model, m.moving_roots[0], step.x) - quasi_static) /
+                     std::abs(quasi_static));
       largest = std::max(largest, std::abs(quasi_static));
     });
     EXPECT_GT(largest, 1e-4);
@@ -134,7 +138,8 @@ TEST(SteadyStart, GrowingPlateDoesNotSwing) {
   EXPECT_GT(swing("prestretched"), 0.9);
 }
 
-// A design of rotating_plate_v01 on its cells: independent quasi-static cells give -0.399 mm.
+// The tip deflection of a design of rotating_plate_v01, simulated on the design mesh, is compared
+// with -0.399 mm of an independent quasi-static finite-element model of the same cells.
 TEST(SteadyStart, DesignedPlateIsBentByCoriolisForces) {
   const Scene scene =
       read("rotating_plate_v01",
@@ -143,15 +148,16 @@ TEST(SteadyStart, DesignedPlateIsBentByCoriolisForces) {
   const mmc::BodyProblem problem = build_problems(scene).at(0);
   m.model.set_factors(m.model.bodies()[0],
                       mmc::dynamic_factors(problem, problem.design.components()));
-  EXPECT_NEAR(tip_deflection(m.model, m.growths[0], start_of(m)), -0.399e-3, 0.02 * 0.399e-3);
+  EXPECT_NEAR(tip_deflection(m.model, m.moving_roots[0], start_of(m)), -0.399e-3, 0.02 * 0.399e-3);
 }
 
-// Without time.start what nothing moves begins at rest, what moves begins steady, and what drives
-// leave free begins where it is put.
+// Without time.start, a case with zero prescribed velocities starts at rest, a case with prescribed
+// velocities starts steady, and a case whose drives leave free motion starts at the given
+// positions.
 TEST(AutomaticStart, FollowsThePrescribedVelocities) {
   const auto of = [](const std::string& name, const std::vector<std::string>& changes) {
     Mechanism m = build_mechanism(read(name, changes));
-    return std::pair(m.motion.start, m.start_words);
+    return std::pair(m.motion.start, m.start_text);
   };
   const auto expect = [&](const std::string& name, std::vector<std::string> changes,
                           fem::Start start, const std::string& words) {
@@ -162,14 +168,15 @@ TEST(AutomaticStart, FollowsThePrescribedVelocities) {
   };
   expect("rotating_plate_v01", {}, fem::Start::steady, "not zero");
   expect("four_bar", {}, fem::Start::at_rest, "are zero");
-  expect("telescopic_crane", {"gravity=[3.0, -9.81]"}, fem::Start::rigid, "sets off");
+  expect("telescopic_crane", {"gravity=[3.0, -9.81]"}, fem::Start::rigid,
+         "degrees of freedom undetermined");
   Mechanism lever_of = build_mechanism(scene_of(timed("") + lever(-0.3)));
   EXPECT_EQ(lever_of.motion.start, fem::Start::rigid);
-  EXPECT_TRUE(lever_of.start_words.empty());
+  EXPECT_TRUE(lever_of.start_text.empty());
 }
 
-// A plate in a hub that does not move hangs under its weight and stays there: a cantilever, whose
-// shear deflection is 0.3 % here.
+// A plate in a static hub starts with its deflection under weight and keeps it. Reference: a
+// cantilever without shear, whose deflection would be 0.3 %.
 TEST(AutomaticStart, PlateInAStillHubHangsAsACantilever) {
   const double length = 0.5, width = 0.02, modulus = 1e9, density = 2700;
   Mechanism m = build_mechanism(scene_of(
@@ -181,8 +188,8 @@ TEST(AutomaticStart, PlateInAStillHubHangsAsACantilever) {
       "\"weld\"\nbody = \"plate\"\nedge = \"root\"\nto = \"hub\"\n"));
   EXPECT_EQ(m.motion.start, fem::Start::at_rest);
   const double sag = -density * kG * std::pow(length, 4) / (8 * modulus * width * width / 12);
-  fem::integrate(m.model, m.growths, m.motion, [&](const fem::MotionStep& step) {
-    EXPECT_NEAR(tip_deflection(step.model, m.growths[0], step.x), sag, 0.02 * std::abs(sag));
+  fem::integrate(m.model, m.moving_roots, m.motion, [&](const fem::MotionStep& step) {
+    EXPECT_NEAR(tip_deflection(step.model, m.moving_roots[0], step.x), sag, 0.02 * std::abs(sag));
   });
 }
 

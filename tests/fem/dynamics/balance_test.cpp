@@ -1,10 +1,11 @@
-// Shows that energies, forces and the powers of the balance belong together: for any motion, a
+// Shows that energies, forces and the powers of the balance are consistent: for any motion, a
 // solution or not,
 //
 //   d(T + U + V)/dt = (M q̈ + F) · q̇ + feed + inflow,
 //
-// with material flowing through driven and free lines at the root and inside, with uniform and
-// designed material, for every term. And what crosses a line is the density of the term's energy.
+// with material that flows through driven and free lines at the root and inside, with uniform
+// material and varying scale factors, for every term. The flow of energy through a line is the
+// energy density of the term.
 #include "fem/dynamics/balance.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ using testing::swinging_line;
 
 const PlaneSection kSection{0.01, 1e6, 0.3, 2700};
 
-/// Lines at 0.1, 0.21, 0.3 and 0.45 m: d driven, f free, | fixed.
+/// Returns lines at 0.1, 0.21, 0.3 and 0.45 m: d driven, f free, | fixed.
 std::vector<MaterialLine> lines(const std::string& kinds) {
   const double at[] = {0.1, 0.21, 0.3, 0.45};
   std::vector<MaterialLine> out;
@@ -38,7 +39,7 @@ std::vector<MaterialLine> lines(const std::string& kinds) {
 
 struct Case {
   std::string lines;
-  std::string terms;  ///< letters: m, a, b, i, g, s
+  std::string terms;  ///< the letters m, a, b, i, g, s select terms in model_of()
   bool designed = false;
   ShapeSet shapes = ShapeSet::h16;
   int dim = 3;
@@ -54,7 +55,7 @@ Workspace model_of(const Case& c) {
   for (const char term : c.terms) {
     if (term == 'm') terms.push_back(make_membrane(kSection));
     if (term == 'a') terms.push_back(make_assumed_membrane(kSection));
-    // So many points that what quadrature leaves of the rational energy does not show.
+    // With this number of points the quadrature error of the rational bending energy is negligible.
     if (term == 'b') terms.push_back(make_bending(kSection, c.designed ? 8 : 15));
     if (term == 'i') terms.push_back(make_inertia(kSection));
     if (term == 'g') terms.push_back(make_gravity(kSection, load));
@@ -63,7 +64,7 @@ Workspace model_of(const Case& c) {
   Workspace model;
   Body& body = model.add_body("plate",
                               std::make_unique<AncfPlate>(c.dim, c.shapes, lines(c.lines),
-                                                          testing::even_lines(-0.05, 0.07, 2)),
+                                                          testing::uniform_lines(-0.05, 0.07, 2)),
                               kSection, std::move(terms));
   if (c.designed) model.set_factors(body, testing::random_factors(5));
   return model;
@@ -77,7 +78,7 @@ TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
   for (const double time : {0.3, 0.9}) {
     const auto [rate, work, p] = testing::energy_rate(model, motion, time);
     EXPECT_NEAR(work + p.total(), rate, 1e-8 * (std::abs(work) + std::abs(p.feed)));
-    // Nothing but strain energy at a free root: its motion is that of an unknown.
+    // A free root with strain energy only has no power, because its motion is an unknown.
     if (GetParam().lines == "f|||" && GetParam().terms == "mb")
       EXPECT_EQ(p.total(), 0);
     else
@@ -86,31 +87,32 @@ TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, AnyMotion,
                          ::testing::Values(
-                             // A driven root: each term alone, all together.
+                             // Driven root: each term alone, then several together.
                              Case{"d|||", "m"}, Case{"d|||", "a"}, Case{"d|||", "b"},
                              Case{"d|||", "i"}, Case{"d|||", "g"}, Case{"d|||", "s"},
                              Case{"d|||", "abigs"}, Case{"d|||", "mbig", false, ShapeSet::h12},
                              Case{"d|||", "migs", false, ShapeSet::h16, 2},
-                             // An end that moves, and lines inside, where bending jumps.
+                             // A moving end, and moving inner lines, where the bending strain is
+                             // discontinuous.
                              Case{"|||d", "abig"}, Case{"dd|d", "mbig"},
-                             // Free lines: at the root, with others, beside driven ones.
+                             // Free lines: the root, several lines, and a line next to driven ones.
                              Case{"f|||", "mb"}, Case{"f|||", "i"}, Case{"f|||", "g"},
                              Case{"f|||", "mbig"}, Case{"f|||", "mig", false, ShapeSet::h12, 2},
                              Case{"f|ff", "mbig"}, Case{"df|d", "mbig"}));
-// Designed material: what the strain energy has at the root jumps when a cell border passes, so
-// the differences stay within a cell.
+// With varying scale factors the strain energy at the root jumps when the boundary of a cell
+// passes; therefore the differences remain inside a cell.
 INSTANTIATE_TEST_SUITE_P(Designed, AnyMotion,
                          ::testing::Values(Case{"d|||", "m", true}, Case{"d|||", "a", true},
                                            Case{"d|||", "b", true}, Case{"d|||", "ig", true},
                                            Case{"d|||", "migs", true, ShapeSet::h12, 2}));
 
-// An n-line inside that moves turns no membrane energy over to its neighbour, strains are
-// continuous there: flow power alone. (Of the sampled strains it is the other direction.)
+// Membrane strains are continuous across a moving inner n-line; therefore the flow power alone
+// closes the energy balance there.
 TEST(FlowPower, OfMembranesIsThatOfAnInnerNLine) {
   for (const bool assumed : {false, true}) {
     std::vector<std::unique_ptr<Term>> terms;
     terms.push_back(assumed ? make_assumed_membrane(kSection) : make_membrane(kSection));
-    auto across = testing::even_lines(-0.05, 0.07, 2);
+    auto across = testing::uniform_lines(-0.05, 0.07, 2);
     across[1] = swinging_line(0.01, 0.02, 1.7);
     Workspace model;
     model.add_body("plate", std::make_unique<AncfPlate>(3, ShapeSet::h16, lines("|d|"), across),
@@ -138,7 +140,7 @@ TEST(Powers, RefuseNLinesThatMove) {
   Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_membrane(kSection));
-  auto across = testing::even_lines(-0.05, 0.07, 1);
+  auto across = testing::uniform_lines(-0.05, 0.07, 1);
   across[0] = swinging_line(-0.05, 0.01, 1);
   model.add_body("plate", std::make_unique<AncfPlate>(2, ShapeSet::h16, lines("||||"), across),
                  kSection, std::move(terms));

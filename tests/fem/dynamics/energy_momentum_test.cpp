@@ -1,7 +1,7 @@
 // Shows that the mean forces of the energy-momentum scheme are discrete gradients: their work over
-// a step is the difference of the energy, to round-off at large random states; they have neither
-// resultant nor moment; their tangents are those of differences. For the terms of the plate, and
-// for a term whose energy is not quadratic through GramGradient.
+// a step is the difference of the energy, to round-off at large random states; elastic ones have
+// neither resultant nor moment; their tangents agree with differences. This is tested for the terms
+// of the plate and for a term with GramGradient whose energy is not quadratic.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,16 +24,17 @@ const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 const Vec2 kGravity(1.3, -9.81);
 constexpr double kStep = 0.02;
 
-/// Stretches instead of Green-Lagrange strains: objective, neither quadratic nor polynomial in q.
+/// A term with stretches instead of Green-Lagrange strains: objective, neither quadratic nor
+/// polynomial in q.
 ///   U = k/2 Σ_p w_p ((|r_m| - 1)² + (|r_n| - 1)² + (r_m·r_n)²)
 class Stretch final : public Term, public MeanForceTerm {
  public:
   std::unique_ptr<Term> clone() const override { return std::make_unique<Stretch>(*this); }
-  void prepare(const Element& element, const Factors& factors, bool) override {
+  void prepare(const Element& element, const ScaleFactors& factors, bool) override {
     gradient_.prepare(element);
     tables_.resize(static_cast<size_t>(element.n_elements()));
     for (int e = 0; e < element.n_elements(); ++e)
-      element.tabulate(e, 6, Tabulate::gradient, factors, FactorKind::stiffness,
+      element.tabulate(e, 6, Tabulate::gradient, factors, ScaleFactorKind::stiffness,
                        tables_[static_cast<size_t>(e)]);
   }
   void add_force(int e, const Local& x, LocalRows& force) const override {
@@ -100,8 +101,8 @@ class MeanForce : public ::testing::TestWithParam<Case> {
     if (GetParam().designed) factors = testing::random_factors(5);
     term->prepare(plate, factors, true);
   }
-  /// A step between two random shapes; mean rates and accelerations as the scheme has them, from a
-  /// random rate at the start.
+  /// Returns a step between two random shapes; its mean rates and accelerations follow from a
+  /// random rate at the start as in the scheme.
   LocalStep step(int e, double size = 0.3) const {
     LocalStep x;
     x.start = testing::rows_of_element(plate, testing::random_shape(plate, size, 1), e);
@@ -129,16 +130,16 @@ class MeanForce : public ::testing::TestWithParam<Case> {
     return f;
   }
   bool elastic() const { return GetParam().make == membrane || GetParam().make == stretch; }
-  /// What add_force() makes of the mean state: the scale of things.
+  /// Returns add_force() at the mean state, as a scale of the forces.
   LocalRows force_at_mean(int e, const LocalStep& x) const {
     LocalRows f = LocalRows::Zero(x.start.rows(), 2);
     term->add_force(e, x.mean, f);
     return f;
   }
 
-  AncfPlate plate{2, GetParam().shapes, testing::even_lines(0.1, 0.3, 2),
-                  testing::even_lines(-0.05, 0.06, 2)};
-  Factors factors;
+  AncfPlate plate{2, GetParam().shapes, testing::uniform_lines(0.1, 0.3, 2),
+                  testing::uniform_lines(-0.05, 0.06, 2)};
+  ScaleFactors factors;
   BodyTerm term = GetParam().make();
 };
 INSTANTIATE_TEST_SUITE_P(Terms, MeanForce,
@@ -153,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Terms, MeanForce,
                                            Case{"point_mass", ShapeSet::h16, false, point_mass}),
                          [](const auto& c) { return c.param.name; });
 
-// Round-off of the energies and of the products of force and step.
+// The tolerance is round-off of the energies and of the products of force and step.
 TEST_P(MeanForce, WorkOverAStepIsTheDifferenceOfTheEnergy) {
   for (int e = 0; e < plate.n_elements(); ++e) {
     const LocalStep x = step(e);
@@ -162,12 +163,12 @@ TEST_P(MeanForce, WorkOverAStepIsTheDifferenceOfTheEnergy) {
     const double scale = std::abs(start) + std::abs(end) + work.cwiseAbs().sum();
     EXPECT_NEAR(work.sum(), end - start, 1e-14 * scale) << e;
     if (e == 3) {
-      EXPECT_GT(std::abs(end - start), 1e-3 * scale);  // there is something to see
+      EXPECT_GT(std::abs(end - start), 1e-3 * scale);  // the difference is not negligible
     }
   }
 }
 
-// Elastic mean forces: no resultant, and no moment about the mean positions, wherever they are.
+// Elastic mean forces have no resultant and no moment about the mean positions.
 TEST_P(MeanForce, ElasticMeanForceKeepsTheMomenta) {
   if (!elastic()) return;
   for (int e = 0; e < plate.n_elements(); ++e) {
@@ -186,8 +187,8 @@ TEST_P(MeanForce, ElasticMeanForceKeepsTheMomenta) {
   }
 }
 
-// Energy is kept whatever F̄ is along the step's normal; that it is the force shows here: it differs
-// from the force at the mean state by O(step²).
+// The energy is conserved for any component of F̄ normal to the step. That F̄ is the right force is
+// shown by its difference to the force at the mean state, which is O(step²).
 TEST_P(MeanForce, IsTheForceAtTheMeanStateUpToSecondOrder) {
   const int e = 1;
   const LocalStep whole = step(e, 0.2);
@@ -205,8 +206,8 @@ TEST_P(MeanForce, IsTheForceAtTheMeanStateUpToSecondOrder) {
   EXPECT_NEAR(std::log2(difference(0.02) / difference(0.01)), 2, 0.05);
 }
 
-// A rigid step: positions and slopes turned and moved, the mean is shorter than either end. Nothing
-// is strained at its ends, and no force acts in it but from the shortening, of second order.
+// In a rigid rotation the mean configuration is shorter than either end. There is no strain at the
+// ends, and the only force comes from the shortening, which is of second order.
 TEST_P(MeanForce, RigidRotationDoesNoWork) {
   if (!elastic()) return;
   const MatrixXd reference = plate.reference();
@@ -255,11 +256,11 @@ TEST_P(MeanForce, TangentIsTheDerivativeByTheEnd) {
   }
 }
 
-/// A term as others may write it, without a mean force.
+/// A term without a mean force.
 class Spring final : public Term {
  public:
   std::unique_ptr<Term> clone() const override { return std::make_unique<Spring>(*this); }
-  void prepare(const Element&, const Factors&, bool) override {}
+  void prepare(const Element&, const ScaleFactors&, bool) override {}
   void add_force(int, const Local&, LocalRows&) const override {}
   void add_tangent(int, const Local&, const Weights&, LocalTangent&) const override {}
   std::string name() const override { return "spring"; }
@@ -271,8 +272,8 @@ TEST(IntegratorTable, NamesWhatItKnowsAndWhatATermLacks) {
   terms.push_back(inertia());
   terms.push_back(std::make_unique<Spring>());
   model.add_body("plate",
-                 std::make_unique<AncfPlate>(2, ShapeSet::h12, testing::even_lines(0, 1, 1),
-                                             testing::even_lines(0, 1, 1)),
+                 std::make_unique<AncfPlate>(2, ShapeSet::h12, testing::uniform_lines(0, 1, 1),
+                                             testing::uniform_lines(0, 1, 1)),
                  kSection, std::move(terms));
   const auto message = [](const std::function<void()>& f) -> std::string {
     try {
@@ -285,9 +286,9 @@ TEST(IntegratorTable, NamesWhatItKnowsAndWhatATermLacks) {
   };
   IntegratorSettings settings;
   settings.name = "leapfrog";
-  EXPECT_NE(message([&] {
-              make_integrator(model, settings);
-            }).find("'leapfrog' is unknown; known are: energy_momentum, generalized_alpha"),
+  EXPECT_NE(message([&] { make_integrator(model, settings); })
+                .find("'leapfrog' is unknown; the available integrators are: energy_momentum, "
+                      "generalized_alpha"),
             std::string::npos);
   settings.name = "generalized_alpha";
   settings.alpha.rho_inf = 1.2;

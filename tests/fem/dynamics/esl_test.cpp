@@ -1,6 +1,7 @@
-// Shows that equivalent static loads carry what they say: deformation and acceleration in the axes
-// of the hub against differences in time of material points' positions while the hub accelerates
-// and the material flows; the rigid continuation inside the hub; the forces of point masses.
+// Shows that equivalent static loads have the right contents: deformation and acceleration in the
+// axes of the hub agree with differences in time of the positions of material points while the hub
+// accelerates and the material flows; the rigid continuation inside the hub and the forces of point
+// masses are right.
 #include "fem/dynamics/esl.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ using testing::second_difference;
 
 constexpr double kTime = 0.4, kRoot = 0.05, kEnd = 0.3;
 
-/// On a column of the grid at kTime, with speed and acceleration.
+/// Motion of the root line, which is on a column of the grid at kTime, with speed and acceleration.
 Motion root_line(double t) {
   const double s = t - kTime;
   return {kRoot - 0.2 * s - 0.3 * s * s, -0.2 - 0.6 * s, -0.6};
@@ -46,7 +47,7 @@ Eigen::Matrix2d turn(double t) {
 class Esl : public ::testing::Test {
  protected:
   Esl() {
-    std::vector<MaterialLine> m = testing::even_lines(kRoot, kEnd, 3);
+    std::vector<MaterialLine> m = testing::uniform_lines(kRoot, kEnd, 3);
     m[0].drive = root_line;
     const PlaneSection section{0.01, 1e8, 0.3, 2700};
     std::vector<std::unique_ptr<Term>> terms;
@@ -54,10 +55,10 @@ class Esl : public ::testing::Test {
     terms.push_back(make_membrane(section));
     model.add_body("plate",
                    std::make_unique<AncfPlate>(2, AncfPlate::ShapeSet::h16, m,
-                                               testing::even_lines(-0.05, 0.05, 2)),
+                                               testing::uniform_lines(-0.05, 0.05, 2)),
                    section, std::move(terms));
   }
-  /// State whose rates belong to nodal values given as a function of time.
+  /// Returns the state whose rates belong to nodal values given as a function of time.
   template <class Values>
   State state(const Values& q) {
     State x;
@@ -107,8 +108,9 @@ TEST_F(Esl, FieldsAreThoseOfMaterialPointsInTheHubsAxes) {
     EXPECT_EQ(set.deformation.segment(2 * grid.node(i, 0), 2 * (grid.ny + 1)).norm(), 0);
 }
 
-// The rigid, extending body: inside the hub by the formula, outside by the shape functions, both
-// against the twice-differenced motion R(t) (X - m₀(t)) + o(t).
+// The acceleration of the rigid, extending body is a formula inside the hub and comes from the
+// shape functions outside. Both must equal the second difference of the motion R(t) (X - m₀(t)) +
+// o(t).
 TEST_F(Esl, RigidBodyContinuesIntoTheHub) {
   const auto rigid = [&](double t) {
     VectorXd q(model.n_dofs());
@@ -153,7 +155,7 @@ TEST_F(Esl, PointMassPushesWithItsInertia) {
   EXPECT_THROW(load(x, {&between, 1}), Error);
 }
 
-// Spread forces have the resultant and the moment they stand for, in the hub's axes.
+// Distributed forces have the prescribed resultant and moment in the axes of the hub.
 TEST_F(Esl, SpreadForcesKeepResultantAndMoment) {
   model.prepare(kTime);
   const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)
@@ -175,7 +177,7 @@ TEST_F(Esl, SpreadForcesKeepResultantAndMoment) {
   EXPECT_LT((set.forces.back().force - turn(kTime).transpose() * point.force).norm(), 1e-15);
 }
 
-// A root between two columns is taken to be on the nearer one; the fields outside are as they are.
+// A root between two columns is assigned to the nearer column; the fields outside do not change.
 TEST_F(Esl, RootBetweenTwoColumnsIsOnTheNearerOne) {
   for (const double later : {0.003, 0.007}) {
     const double t = kTime + later;
@@ -193,7 +195,7 @@ TEST_F(Esl, RootBetweenTwoColumnsIsOnTheNearerOne) {
   }
 }
 
-/// ΔT in kelvin that rises and speeds up.
+/// Temperature rise ΔT in kelvin with a growing rate.
 Motion temperature(double t) {
   const double s = t - kTime;
   return {80 + 50 * s + 400 * s * s, 50 + 800 * s, 800};
@@ -208,7 +210,8 @@ class HotEsl : public Esl {
     return load(x, {}, {}, {&force, 1});
   }
 
-  /// Nodal values of r = R(t) (s (X - m₀), y(X - m₀, Y)) + o(t); y and its derivatives by x, y, xy.
+  /// Returns the nodal values of r = R(t) (s (X - m₀), y(X - m₀, Y)) + o(t) from s, y and its
+  /// derivatives by x, y, xy.
   template <class Across>
   VectorXd grown(double t, const Across& across) {
     VectorXd q(model.n_dofs());
@@ -227,8 +230,8 @@ class HotEsl : public Esl {
   }
 };
 
-// A hot body that nothing holds back. Its loads are those of the mass where it is,
-// by the twice-differenced motion R (1 + a) (X - m₀) + o, also in the hub.
+// A hot body expands freely. Its inertia loads use the expanded positions: they must equal the
+// second difference of the motion R (1 + a) (X - m₀) + o, also in the hub.
 TEST_F(HotEsl, FreeGrowthIsNoDeformation) {
   const auto stretch = [](double t) { return 1 + kExpansion * temperature(t).value; };
   const State x = state([&](double t) {
@@ -251,8 +254,8 @@ TEST_F(HotEsl, FreeGrowthIsNoDeformation) {
     }
 }
 
-// An edge that a share of the growth is left to holds back the rest, and that is deformation: what
-// is left of the motion without the growth of the plate.
+// An edge that permits only a share of the thermal expansion restrains the rest. The deformation
+// must equal the motion minus the free expansion of the plate.
 TEST_F(HotEsl, TheEdgeHoldsBackWhatItDoesNotTakePartIn) {
   const double length = kEnd - kRoot;
   for (const double share : {0.0, 0.4, 1.0}) {
@@ -279,7 +282,8 @@ TEST_F(HotEsl, TheEdgeHoldsBackWhatItDoesNotTakePartIn) {
         const Vec2 w(0, i < set.root_column ? 0.0 : -missing * X.y());
         EXPECT_LT((set.deformation.segment<2>(2 * grid.node(i, j)) - w).norm(), 1e-14) << i;
       }
-    // The continuation into the hub meets the plate on the root line: root between two columns.
+    // The continuation into the hub agrees with the plate at the root line, which is between two
+    // columns.
     const auto rigid = [&](double t, const Vec2& X) {
       const double s = 1 + kExpansion * temperature(t).value;
       const double s_y = 1 + share * kExpansion * temperature(t).value;
@@ -293,8 +297,9 @@ TEST_F(HotEsl, TheEdgeHoldsBackWhatItDoesNotTakePartIn) {
   }
 }
 
-// The far edge: a where a joint keeps its width, however the plate is turned in the hub's axes; the
-// rest where it takes part; nothing where it grows freely, or nothing but a load is at it.
+// The restrained stretch of the far edge is a where a joint keeps its width, for any rotation of
+// the plate in the axes of the hub; it is the rest of a where the edge expands partly; it is zero
+// where the edge expands freely or where only a load acts on it.
 TEST_F(HotEsl, TheFarEdgeIsHeldByItsJoint) {
   const double length = kEnd - kRoot, a = 0.08;
   const AttachedForce joint{{kEnd, 0}, true, {3, -5}, 0.7, true};
@@ -328,7 +333,7 @@ TEST_F(HotEsl, TheFarEdgeIsHeldByItsJoint) {
   EXPECT_EQ(load_of(state([&](double) { return model.reference().q; }), joint).held_end_stretch, 0);
 }
 
-// A hot body at its reference temperature is a cold one.
+// A hot body at its reference temperature has the loads of a cold body.
 TEST_F(HotEsl, WithoutRiseItIsCold) {
   model.prepare(kTime);
   const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)

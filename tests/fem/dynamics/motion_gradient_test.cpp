@@ -1,5 +1,5 @@
-// Gradients of motions: through starts, steps, changes of meshes and projections they are what
-// differences of whole motions say.
+// Shows that gradients of motions, through starts, steps, changes of meshes and projections, agree
+// with differences of whole motions.
 
 #include "fem/dynamics/gradients/motion_gradient.h"
 
@@ -21,11 +21,11 @@ namespace {
 using testing::RotatingPlate;
 using testing::ShapeSet;
 
-/// A random direction in the factors of a body, with the size of the factors themselves.
-FactorSlopes random_direction(const Factors& factors, unsigned seed) {
+/// Returns a random direction in the factors of a body, proportional to the factors.
+ScaleFactorGradient random_direction(const ScaleFactors& factors, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  FactorSlopes out;
+  ScaleFactorGradient out;
   out.stiffness = factors.stiffness;
   out.mass = factors.mass;
   for (VectorXd* x : {&out.stiffness, &out.mass})
@@ -33,11 +33,11 @@ FactorSlopes random_direction(const Factors& factors, unsigned seed) {
   return out;
 }
 
-double product(const FactorSlopes& a, const FactorSlopes& b) {
+double product(const ScaleFactorGradient& a, const ScaleFactorGradient& b) {
   return a.stiffness.dot(b.stiffness) + a.mass.dot(b.mass);
 }
 
-/// A plate that turns and grows, of cells or of cubic elements, from void to material.
+/// A rotating, extending plate of cells or of cubic elements with factors from void to material.
 struct Growing {
   testing::Scene scene;
   MotionSettings settings;
@@ -55,7 +55,7 @@ struct Growing {
     p.factors.stiffness.resize(n);
     p.factors.mass.resize(n);
     for (int c = 0; c < n; ++c) {
-      // A soft band along the middle; the decades between are where void passes into material.
+      // A soft band along the middle has factors over the decades between void and material.
       const bool middle = c % 4 == 1 && c % 3 != 0;
       p.factors.stiffness[c] = middle ? std::pow(10.0, -0.5 - c % 5 * 0.5) : 0.8 + 0.02 * (c % 7);
       p.factors.mass[c] = middle ? 0.05 : 0.9;
@@ -63,7 +63,7 @@ struct Growing {
     p.section.youngs_modulus = 1e8;
     scene = testing::make_scene(p);
     if (shapes == ShapeSet::q4) {
-      Growth& g = scene.growths[0];
+      MovingRoot& g = scene.moving_roots[0];
       g.cell = 0.025;
       g.max_length = 1.3 * g.cell;
       g.min_length = 0.25 * g.cell;
@@ -75,33 +75,33 @@ struct Growing {
     using Times = MotionObjective::Times;
     objectives = {
         {measure_strain_energy(), Times::stops, 1},
-        {measure_deflection("plate", p.tip(), scene.growths[0].hub), Times::steps, 8},
+        {measure_deflection("plate", p.tip(), scene.moving_roots[0].hub), Times::steps, 8},
         {measure_joint_force("root", "plate"), Times::steps, 4},
     };
   }
 
-  std::vector<double> values(const FactorSlopes& direction, double by) const {
+  std::vector<double> values(const ScaleFactorGradient& direction, double by) const {
     Workspace model = scene.model;
-    Factors moved = scene.model.bodies()[0].factors;
+    ScaleFactors moved = scene.model.bodies()[0].factors;
     moved.stiffness += by * direction.stiffness;
     moved.mass += by * direction.mass;
     model.set_factors(model.bodies()[0], moved);
-    return motion_values(model, scene.growths, settings, objectives);
+    return motion_values(model, scene.moving_roots, settings, objectives);
   }
   MotionGradients gradients(int checkpoints = 0) const {
-    return motion_gradients(scene.model, scene.growths, settings, objectives,
+    return motion_gradients(scene.model, scene.moving_roots, settings, objectives,
                             {.checkpoints = checkpoints, .parameters = {}});
   }
 };
 
 class EveryMotion : public ::testing::TestWithParam<std::tuple<ShapeSet, double, Start>> {};
 
-// Central differences of fourth order know six digits and more.
+// Central differences of fourth order are accurate to at least six digits.
 TEST_P(EveryMotion, HasTheGradientThatDifferencesSay) {
   const auto [shapes, speed, start] = GetParam();
   const Growing motion(shapes, speed, start);
   const MotionGradients found = motion.gradients();
-  const FactorSlopes direction = random_direction(motion.scene.model.bodies()[0].factors, 5);
+  const ScaleFactorGradient direction = random_direction(motion.scene.model.bodies()[0].factors, 5);
   const auto along = [&](double by) {
     const std::vector<double> v = motion.values(direction, by);
     return VectorXd(Eigen::Map<const VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())));
@@ -110,7 +110,7 @@ TEST_P(EveryMotion, HasTheGradientThatDifferencesSay) {
   for (size_t k = 0; k < motion.objectives.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     EXPECT_NEAR(found.of[k].value, there[i], 1e-12 * there[i]);
-    EXPECT_NEAR(product(found.of[k].by_factors[0], direction), differences[i],
+    EXPECT_NEAR(product(found.of[k].d_factors[0], direction), differences[i],
                 2e-6 * std::abs(differences[i]))
         << "objective " << k;
   }
@@ -127,15 +127,17 @@ INSTANTIATE_TEST_SUITE_P(Gradients, EveryMotion,
                                            std::tuple(ShapeSet::q4, -0.5, Start::steady),
                                            std::tuple(ShapeSet::h16, 0.5, Start::steady)));
 
-// Lines of nodes come at 0.5 m/s and go at -0.5 m/s; forces are balanced after each of them.
+// Lines of nodes are inserted at 0.5 m/s and removed at -0.5 m/s; forces are balanced after each
+// change.
 TEST(MotionGradient, HasTaylorRemaindersOfOrderTwoThroughChangesOfTheMesh) {
   for (const double speed : {0.5, -0.5}) {
     const Growing motion(ShapeSet::h16, speed, Start::prestretched);
     const MotionGradients found = motion.gradients();
     EXPECT_GE(found.motion.events.size(), 1U) << speed;
-    const FactorSlopes direction = random_direction(motion.scene.model.bodies()[0].factors, 7);
+    const ScaleFactorGradient direction =
+        random_direction(motion.scene.model.bodies()[0].factors, 7);
     for (size_t k = 0; k < motion.objectives.size(); ++k) {
-      const double slope = product(found.of[k].by_factors[0], direction);
+      const double slope = product(found.of[k].d_factors[0], direction);
       const testing::Rate remainder =
           testing::fit_rate({1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5}, [&](double by) {
             return std::abs(motion.values(direction, by)[k] - found.of[k].value - by * slope);
@@ -146,13 +148,14 @@ TEST(MotionGradient, HasTaylorRemaindersOfOrderTwoThroughChangesOfTheMesh) {
   }
 }
 
-// A beam that is welded to the free end of the plate across it goes with its motion, and so do the
-// forces between them.
+// A beam that is welded across the free end of the plate moves with it; the gradient includes the
+// forces in the weld.
 TEST(MotionGradient, PassesThroughAWeldBetweenBodies) {
   for (const Start start : {Start::rigid, Start::prestretched, Start::steady}) {
     Growing motion(ShapeSet::h16, 0, start);
     static constexpr double kOmega = 2 * std::numbers::pi, kTip = 0.5;
-    constexpr double kStep = 2e-3, kRoundOff = 1e-12;  // of values: what Newton's method leaves
+    // relative round-off of values after Newton's method
+    constexpr double kStep = 2e-3, kRoundOff = 1e-12;
     const PlaneSection light{0.001, 1e8, 0.3, 2700};
     std::vector<std::unique_ptr<Term>> terms;
     terms.push_back(make_inertia(light));
@@ -161,7 +164,7 @@ TEST(MotionGradient, PassesThroughAWeldBetweenBodies) {
     model.add_body("beam", std::make_unique<AncfBeam>(0.2, 0.04, 3), light, std::move(terms));
     model.add_joint(make_body_weld("corner", {"plate", "free_end"}, {"beam", "root"},
                                    0.5 * std::numbers::pi, WeldMode::edge));
-    motion.settings.placement = [](double t) {
+    motion.settings.body_poses = [](double t) {
       const Vec2 e(std::cos(kOmega * t), std::sin(kOmega * t)), n(-e.y(), e.x());
       FrameMotion f;
       f.origin = kTip * e;
@@ -169,14 +172,14 @@ TEST(MotionGradient, PassesThroughAWeldBetweenBodies) {
       f.origin_acceleration = -kTip * kOmega * kOmega * e;
       f.angle = kOmega * t + 0.5 * std::numbers::pi;
       f.angle_rate = kOmega;
-      return std::vector<Placed>{{"beam", f, 0}};
+      return std::vector<BodyPose>{{"beam", f, 0}};
     };
     motion.settings.end = 0.05;
     motion.settings.stops = {0.02, 0.05};
     motion.objectives.push_back(
         {measure_joint_force("corner", "beam"), MotionObjective::Times::steps, 4});
     const MotionGradients found = motion.gradients();
-    const FactorSlopes direction = random_direction(model.bodies()[0].factors, 5);
+    const ScaleFactorGradient direction = random_direction(model.bodies()[0].factors, 5);
     const auto along = [&](double by) {
       const std::vector<double> v = motion.values(direction, by);
       return VectorXd(Eigen::Map<const VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())));
@@ -185,23 +188,24 @@ TEST(MotionGradient, PassesThroughAWeldBetweenBodies) {
     for (size_t k = 0; k < motion.objectives.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       EXPECT_NEAR(found.of[k].value, there[i], 1e-12 * there[i]);
-      EXPECT_NEAR(product(found.of[k].by_factors[0], direction), differences[i],
+      EXPECT_NEAR(product(found.of[k].d_factors[0], direction), differences[i],
                   2e-6 * std::abs(differences[i]) + kRoundOff * there[i] / kStep)
           << "objective " << k;
     }
   }
 }
 
-// Kept states or parts that are gone through again: the same to what solutions are known to.
+// Stored states and states recomputed from checkpoints give equal gradients to the accuracy of the
+// solutions.
 TEST(MotionGradient, IsTheSameWithCheckpoints) {
   const Growing motion(ShapeSet::q4, 0.5, Start::prestretched);
   const MotionGradients kept = motion.gradients(), parts = motion.gradients(4);
-  // The adjoint of a step is solved to 2e-13 of its right side, with whatever factor is there. Of
-  // 50 steps that is 1e-11, and up to ten times as much where one error goes through the next
+  // The adjoint of a step is solved to 2e-13 of its right side with the present factor. Over 50
+  // steps that is 1e-11, and up to ten times as much where an error is transferred through the next
   // steps.
   constexpr double kAllowed = 1e-10;
   for (size_t k = 0; k < kept.of.size(); ++k) {
-    const FactorSlopes &a = kept.of[k].by_factors[0], &b = parts.of[k].by_factors[0];
+    const ScaleFactorGradient &a = kept.of[k].d_factors[0], &b = parts.of[k].d_factors[0];
     EXPECT_EQ(kept.of[k].value, parts.of[k].value);
     EXPECT_LT((a.stiffness - b.stiffness).norm(), kAllowed * a.stiffness.norm());
     EXPECT_LT((a.mass - b.mass).norm(), kAllowed * a.mass.norm());

@@ -1,6 +1,6 @@
-// Shows assembly, diagnosis and kinematics on rigid bodies in natural coordinates: closed-form
-// motion of a four-bar, velocities after an impulse, and messages that name joints, not the unit
-// axes of bodies.
+// Shows that assembly, diagnosis and kinematics of rigid bodies in natural coordinates are right:
+// closed-form motion of a four-bar, velocities after an impulse, and messages that name joints and
+// not the unit axes of bodies.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -20,7 +20,7 @@ using testing::FourBar;
 using testing::linear;
 using Names = std::vector<std::string>;
 
-/// A rod from its origin along its first axis, with its unit axis.
+/// Adds a rod that extends from its origin along its first axis, with its unit axis.
 void add_rod(Workspace& model, const std::string& name, double length, double mass = 1) {
   const RigidSection section{mass, {length / 2, 0}, mass * length * length / 12};
   std::vector<std::unique_ptr<Term>> terms;
@@ -29,9 +29,9 @@ void add_rod(Workspace& model, const std::string& name, double length, double ma
   model.add_joint(make_unit_axis(name + " axis", name));
 }
 
-/// Origin and angle of a rigid body.
-void place(const Model& model, const std::string& body, const Vec2& origin, double angle,
-           VectorXd& q) {
+/// Sets origin and angle of a rigid body.
+void location(const Model& model, const std::string& body, const Vec2& origin, double angle,
+              VectorXd& q) {
   const int at = model.body(body).first_dof;
   q[at] = origin.x();
   q[at + 1] = origin.y();
@@ -58,19 +58,19 @@ struct RigidFourBar {
     out.add_joint(make_angle_drive("motor", {}, {.body = "crank"}, angle));
     return out;
   }
-  /// All unknowns of the closed form, angles off by `off`.
+  /// Returns all unknowns of the closed form with an angle error of `off`.
   VectorXd exact(const Model& model, double t, double off = 0) const {
     const double a = angle(t).value;
     const Vec2 pin = bar.crank_pin(a), end = bar.rocker_pin(a), ground(bar.g, 0);
     VectorXd q(model.n_dofs());
-    place(model, "crank", {0, 0}, a + off, q);
-    place(model, "coupler", pin, direction(pin, end) - off, q);
-    place(model, "rocker", ground, direction(ground, end) + off, q);
+    location(model, "crank", {0, 0}, a + off, q);
+    location(model, "coupler", pin, direction(pin, end) - off, q);
+    location(model, "rocker", ground, direction(ground, end) + off, q);
     return q;
   }
 };
 
-// Started with all angles 0.2 rad off; a revolution and back.
+// The start has angle errors of 0.2 rad; the motion covers a revolution and goes back.
 TEST(RigidMechanisms, FourBarFollowsItsClosedForm) {
   const RigidFourBar mechanism{{}, linear(0.7, 2 * std::numbers::pi)};
   Workspace model = mechanism.model();
@@ -106,11 +106,11 @@ TEST(RigidMechanisms, UnreachablePathNamesTimeAndJoints) {
   }
 }
 
-// A rod at rest whose end is suddenly moved across at speed w: the impulse p there gives
-// p (1/m + s²/J) = w, the centre p/m and the rod's rotation s p/J. Natural coordinates have the
-// same kinetic energy, so the smallest change in the mass norm is that motion. What is added to the
-// masses, 1e-8 of their mean 7.5 kg, changes the determinant of the mass matrix of (r_y, u_y)
-// by 1.2e-7 of it, and a spin of 5 by less than 1e-6.
+// The end of a rod at rest is suddenly moved across at speed w. The impulse p there satisfies p
+// (1/m + s²/J) = w; the velocity of the centre is p/m and the angular velocity s p/J. Natural
+// coordinates have the same kinetic energy, so that the smallest change in the mass norm is that
+// motion. The masses are increased by 1e-8 of their mean 7.5 kg, which changes the determinant of
+// the mass matrix of (r_y, u_y) by 1.2e-7 of itself and an angular velocity of 5 by less than 1e-6.
 TEST(RigidMechanisms, VelocitiesAreThoseOfAnImpulse) {
   const double length = 0.6, mass = 3, s = length / 2, inertia = mass * length * length / 12;
   const double w = 2, impulse = w / (1 / mass + s * s / inertia);
@@ -139,7 +139,7 @@ TEST(RigidMechanisms, HingeAndWeldTwice) {
     out.add_joint(make_revolute("ground", {}, {.body = "a"}));
     for (const int i : {0, 1}) {
       const std::string number = std::to_string(i + 1);
-      // Both at one place for hinges; apart for welds, which is the same for rigid bodies.
+      // Hinges are at one point; welds are apart, which makes no difference for rigid bodies.
       const Vec2 on_a(1, weld ? 0.3 * i : 0), on_b(i * miss, weld ? 0.3 * i : 0);
       if (weld)
         out.add_joint(make_rigid_weld("weld_" + number, {"a", on_a}, {"b", on_b}));
@@ -150,13 +150,14 @@ TEST(RigidMechanisms, HingeAndWeldTwice) {
   };
   const auto diagnosis_of = [](Workspace model) {
     State x = model.reference();
-    place(model, "b", {1, 0}, 0, x.q);
+    location(model, "b", {1, 0}, 0, x.q);
     return diagnose(model, x);
   };
   EXPECT_EQ(describe(diagnosis_of(model_with(false, 0))),
-            "joints 'hinge_1', 'hinge_2' hold the same 2 freedoms");
+            "joints 'hinge_1', 'hinge_2' constrain 2 degrees of freedom more than once");
   const Diagnosis welded = diagnosis_of(model_with(true, 0));
-  EXPECT_EQ(describe(welded), "joints 'weld_1', 'weld_2' hold the same 3 freedoms");
+  EXPECT_EQ(describe(welded),
+            "joints 'weld_1', 'weld_2' constrain 3 degrees of freedom more than once");
   EXPECT_EQ(welded.degrees_of_freedom(), 1);
   const Diagnosis apart = diagnosis_of(model_with(true, 0.012));
   EXPECT_TRUE(apart.is_contradictory());
@@ -164,7 +165,8 @@ TEST(RigidMechanisms, HingeAndWeldTwice) {
   EXPECT_EQ(apart.groups[0].joints, (Names{"weld_1", "weld_2"}));
 }
 
-// A platform on three equal, parallel links: no pair of them is too much, the three together are.
+// A platform on three equal, parallel links: each pair of them is independent, all three are
+// redundant.
 TEST(RigidMechanisms, ThreeParallelLinks) {
   const auto model_with = [](int links, double third) {
     Workspace out;
@@ -181,10 +183,10 @@ TEST(RigidMechanisms, ThreeParallelLinks) {
   };
   const auto start = [](const Model& model, int links) {
     State x = model.reference();
-    place(model, "platform", {0.3, 0.4}, 0, x.q);
+    location(model, "platform", {0.3, 0.4}, 0, x.q);
     for (int i = 0; i < links; ++i)
-      place(model, "link_" + std::to_string(i), {0.4 * i, i == 1 ? 0.2 : 0}, std::atan2(0.4, 0.3),
-            x.q);
+      location(model, "link_" + std::to_string(i), {0.4 * i, i == 1 ? 0.2 : 0},
+               std::atan2(0.4, 0.3), x.q);
     return x;
   };
   Workspace two = model_with(2, 0.5);

@@ -1,6 +1,7 @@
-// The rigid kinematic model from plain data: closed forms of a four-bar, a slider-crank and a polar
-// arm for its motion, the velocities it is given, and the drives that follow from a path; what is
-// refused; that copies are independent; and where welds put undeformed bodies.
+// Shows that the rigid kinematic model gives the closed forms of a four-bar, a slider-crank and a
+// polar arm: motion, initial velocities, and drives that follow from a path. Shows also that
+// impossible motions are refused, that copies are independent, and that welds place undeformed
+// bodies correctly.
 #include "fem/dynamics/starts/rigid_motion.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ using testing::linear;
 
 constexpr double kPi = std::numbers::pi;
 
-/// A slender rod from its origin along its first axis.
+/// Returns a slender rod that extends from its origin along its first axis.
 MechanismBody rod(const std::string& name, double length, const Vec2& at, double angle) {
   MechanismBody out;
   out.name = name;
@@ -34,13 +35,13 @@ MechanismBody rod(const std::string& name, double length, const Vec2& at, double
   return out;
 }
 
-void hinge(RigidMechanism& out, const std::string& name, MarkerPlace a, MarkerPlace b) {
+void hinge(RigidMechanism& out, const std::string& name, MarkerLocation a, MarkerLocation b) {
   out.joints.push_back({.joint = make_revolute(name, std::move(a), std::move(b))});
 }
 
-/// An angle drive between two bodies; without a course it is not known yet.
-void turn(RigidMechanism& out, const std::string& drive, const MarkerPlace& a, const MarkerPlace& b,
-          const Course& course) {
+/// Adds an angle drive between two bodies; without a course its motion is not prescribed yet.
+void turn(RigidMechanism& out, const std::string& drive, const MarkerLocation& a,
+          const MarkerLocation& b, const Course& course) {
   MechanismJoint joint{.joint = {}, .is_driven = true, .drive = drive, .prescribes = true};
   if (course) joint.joint = make_angle_drive(drive, a, b, course);
   joint.coordinate = angle_between;
@@ -53,7 +54,7 @@ double direction(const Vec2& from, const Vec2& to) {
   return std::atan2(to.y() - from.y(), to.x() - from.x());
 }
 
-/// All angles of the guess are off by 0.1 rad.
+/// Returns a four-bar whose initial angles have errors of 0.1 rad.
 RigidMechanism four_bar(const testing::FourBar& bar, const Course& angle) {
   const double start = angle(0).value, off = 0.1;
   const Vec2 a = bar.crank_pin(start), b = bar.rocker_pin(start), c(bar.g, 0);
@@ -90,7 +91,7 @@ TEST(RigidMotion, FourBarClosesAtAllTimes) {
   EXPECT_NO_THROW(require_motion(kinematics, 1));
 }
 
-// The rods are too short for the crank to turn further than that.
+// The rods are too short for a rotation of the crank beyond its limit angle.
 TEST(RigidMotion, IsRefusedWhereItsDrivesCannotLeadIt) {
   const testing::FourBar bar{.r = 0.3, .l = 0.35, .s = 0.25, .g = 0.45};
   const RigidKinematics kinematics(four_bar(bar, linear(0.5, 1.3)));
@@ -111,7 +112,8 @@ TEST(RigidMotion, CopiesOfAModelAreIndependent) {
   }
 }
 
-/// Crank of length r that turns about the origin, rod of length l, block on the x axis.
+/// Returns a crank of length r that rotates about the origin, a rod of length l, and a block on the
+/// x axis.
 RigidMechanism slider_crank(double r, double l, double angle) {
   RigidMechanism out;
   const double x = r * std::cos(angle) + std::sqrt(l * l - std::pow(r * std::sin(angle), 2));
@@ -125,7 +127,7 @@ RigidMechanism slider_crank(double r, double l, double angle) {
   return out;
 }
 
-/// dx/dθ of the block.
+/// Returns dx/dθ of the block.
 double block_rate(double r, double l, double angle) {
   const double s = std::sin(angle), c = std::cos(angle);
   return -r * s - r * r * s * c / std::sqrt(l * l - r * r * s * s);
@@ -137,7 +139,8 @@ TEST(InitialVelocities, OfASliderCrankFollowFromThatOfItsCrank) {
   mechanism.bodies[0].angular_velocity = rate;
   RigidMotion motion{RigidKinematics(mechanism)};
   EXPECT_EQ(motion.degrees_of_freedom(), 1);
-  const FrameMotion block = motion.kinematics().frame("block", motion.at(5));  // of the start
+  // without drives, any time gives the start
+  const FrameMotion block = motion.kinematics().frame("block", motion.at(5));
   EXPECT_NEAR(block.origin_rate.x(), rate * block_rate(r, l, angle), 1e-11);
   EXPECT_NEAR(block.origin_rate.y(), 0, 1e-11);
   EXPECT_GE(motion.start_speed(), std::abs(block.origin_rate.x()) - 1e-12);
@@ -145,8 +148,8 @@ TEST(InitialVelocities, OfASliderCrankFollowFromThatOfItsCrank) {
 
 TEST(InitialVelocities, OfAllMotionsTheOneOfLeastKineticEnergyIsTaken) {
   RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
-  RigidMotion rests{RigidKinematics(mechanism)};
-  EXPECT_LT(rests.start_speed(), 1e-12);
+  RigidMotion stagnates{RigidKinematics(mechanism)};
+  EXPECT_LT(stagnates.start_speed(), 1e-12);
   mechanism.bodies[2].velocity = Vec2(-0.4, 0);
   RigidMotion moves{RigidKinematics(mechanism)};
   EXPECT_NEAR(moves.kinematics().frame("crank", moves.at(0)).angle_rate,
@@ -155,7 +158,7 @@ TEST(InitialVelocities, OfAllMotionsTheOneOfLeastKineticEnergyIsTaken) {
 
 TEST(InitialVelocities, ThatContradictJointsAreRefusedWithTheirSource) {
   RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
-  mechanism.bodies[2].velocity = Vec2(0.3, 0.1);  // away from the guide
+  mechanism.bodies[2].velocity = Vec2(0.3, 0.1);  // not along the guide
   mechanism.bodies[2].source = "crank.toml:7: ";
   try {
     RigidMotion motion{RigidKinematics(mechanism)};
@@ -181,22 +184,22 @@ TEST(RigidMotion, ListsTheBodiesThatRideInNoHub) {
   RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
   mechanism.bodies[1].line = 0.5;
   mechanism.bodies[2].is_placed = false;
-  const Placement where = rigid_configuration(RigidKinematics(mechanism));
-  const std::vector<Placed> bodies = where(0);
+  const BodyPoses where = rigid_configuration(RigidKinematics(mechanism));
+  const std::vector<BodyPose> bodies = where(0);
   ASSERT_EQ(bodies.size(), 2u);
   EXPECT_EQ(bodies[1].body, "rod");
   EXPECT_EQ(bodies[1].line, 0.5);
   EXPECT_NEAR(bodies[0].frame.angle, 1.1, 1e-12);
-  // A copy that goes elsewhere leaves it where it is, and comes to the same positions.
-  const Placement copy = where;
+  // A copy that moves to another time does not change the original and gives equal positions.
+  const BodyPoses copy = where;
   copy(0.3);
-  const std::vector<Placed> again = where(0), later = where(0.3), other = copy(0.3);
+  const std::vector<BodyPose> again = where(0), later = where(0.3), other = copy(0.3);
   EXPECT_EQ(again[1].frame.origin, bodies[1].frame.origin);
   EXPECT_NEAR((later[1].frame.origin - other[1].frame.origin).norm(), 0, 1e-12);
 }
 
-/// A carriage on an arm that turns about the origin, and a hand that turns on the carriage: the
-/// drives "turn", "reach" and "wrist" lead it anywhere.
+/// Returns a carriage on an arm that rotates about the origin, and a hand that rotates on the
+/// carriage. The drives "turn", "reach" and "wrist" move it to any pose.
 RigidMechanism polar_arm(const Vec2& hand, double angle) {
   RigidMechanism out;
   const double theta = direction({0, 0}, hand);
@@ -214,8 +217,9 @@ RigidMechanism polar_arm(const Vec2& hand, double angle) {
   return out;
 }
 
-// The hand goes round the shoulder: the angle of the arm passes half turns. Between samples, 1e-3 s
-// apart, the quintics are off by 1e-18 of the sixth derivative; the positions to 1e-12.
+// The hand moves around the shoulder, so that the angle of the arm passes π. Between samples, 1e-3
+// s apart, the quintics have an error of 1e-18 times the sixth derivative; the positions have an
+// error of 1e-12.
 TEST(InverseKinematics, OfAPolarArmIsItsClosedForm) {
   const double rate = 4;
   const Course x = [=](double t) {
@@ -261,8 +265,9 @@ TEST(InverseKinematics, OnlyItKnowsWhatDrivesWithoutAMotionDo) {
   EXPECT_THROW(RigidKinematics(polar_arm({0.5, 0.5}, 0.5)), Error);
 }
 
-// A quarter of a circle of radius R begins at the origin, turned by 0.3; a straight body goes on at
-// its end, and the root of a third one meets its free end across.
+// A quarter of a circle of radius R begins at the origin, rotated by 0.3. A straight body continues
+// it at its end, and the root of a third body is welded perpendicularly to the free end of the
+// straight one.
 TEST(ReferencePose, GoesOnAlongWelds) {
   const double R = 0.8, quarter = 0.5 * kPi * R, angle = 0.3;
   const std::vector<UndeformedBody> bodies = {
@@ -275,7 +280,7 @@ TEST(ReferencePose, GoesOnAlongWelds) {
   const Vec2 corner = rotation(angle) * Vec2(R, R);
   const ReferencePose straight = reference_pose(bodies, welds, "straight"),
                       last = reference_pose(bodies, welds, "last");
-  EXPECT_LT((straight.place({0, 0}).head<2>() - corner).norm(), 1e-15);
+  EXPECT_LT((straight.location({0, 0}).head<2>() - corner).norm(), 1e-15);
   EXPECT_NEAR(straight.angle, angle + 0.5 * kPi, 1e-15);
   EXPECT_EQ(straight.line, 0.2);
   const Vec2 up = rotation(straight.angle) * Vec2(1, 0);

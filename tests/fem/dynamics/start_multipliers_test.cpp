@@ -1,5 +1,6 @@
-// Joint forces are smooth from the second step on: generalized-alpha starts with what the smooth
-// solution asks for.
+// Shows that joint forces are smooth from the second step on, because generalized-alpha starts with
+// the accelerations of the smooth solution: for a bar that a drive rotates with an acceleration,
+// with a second bar hinged to its end, and for an extending plate.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +13,7 @@
 namespace flexmorph::fem {
 namespace {
 
-// A pin in the ground, a bar on it that a drive turns with an acceleration, a second one that hangs
-// from its end: what holds them is smooth from the start.
+// Largest third difference and largest absolute value of joint forces.
 struct Alternation {
   double largest = 0, size = 0;
   void see(const std::vector<double>& force) {
@@ -24,11 +24,13 @@ struct Alternation {
   }
 };
 
-/// Third differences of all joint forces from the first step on, of the largest force: 8 times what
-/// alternates from step to step, and (ω h)³ of what is smooth.
-double alternation(Workspace& model, std::span<const Growth> growths, MotionSettings settings) {
+/// Returns the largest third difference of all joint forces from the first step on, relative to the
+/// largest force: it is 8 times a component that alternates from step to step, and (ω h)³ of a
+/// smooth component.
+double alternation(Workspace& model, std::span<const MovingRoot> moving_roots,
+                   MotionSettings settings) {
   std::vector<std::vector<double>> forces;
-  integrate(model, growths, settings, [&](const MotionStep& step) {
+  integrate(model, moving_roots, settings, [&](const MotionStep& step) {
     const auto n = static_cast<size_t>(step.x.lambda.size());
     forces.resize(n);
     for (size_t i = 0; i < n; ++i) forces[i].push_back(step.x.lambda[static_cast<Eigen::Index>(i)]);
@@ -51,7 +53,7 @@ TEST(StartOfMultipliers, PendulumIsSmooth) {
   settings.end = 0.1;
   settings.step = 1e-3;
   settings.start = Start::rigid;
-  settings.placement = [](double) {
+  settings.body_poses = [](double) {
     FrameMotion a, b;
     a.angle = 0.3;
     a.angle_rate = 5;
@@ -59,7 +61,7 @@ TEST(StartOfMultipliers, PendulumIsSmooth) {
     b.origin_rate = 5 * Vec2(-std::sin(0.3), std::cos(0.3));
     b.angle = -0.5;
     b.angle_rate = -3;
-    return std::vector<Placed>{{"a", a, 0}, {"b", b, 0}};
+    return std::vector<BodyPose>{{"a", a, 0}, {"b", b, 0}};
   };
   for (const double rho : {0.0, 0.5, 0.8, 0.95}) {
     settings.alpha.rho_inf = rho;
@@ -74,7 +76,7 @@ TEST(StartOfMultipliers, GrowingPlateIsSmooth) {
   settings.end = 0.1;
   settings.step = 1e-3;
   settings.start = Start::steady;
-  EXPECT_LT(alternation(scene.model, scene.growths, settings), 1e-4);
+  EXPECT_LT(alternation(scene.model, scene.moving_roots, settings), 1e-4);
 }
 
 }  // namespace

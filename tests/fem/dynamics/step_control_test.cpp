@@ -1,5 +1,6 @@
-// Shows that the estimate of the local error is the local error, of motions that the step resolves;
-// that it forgets what the step does not resolve; and that the controller keeps its promises.
+// Shows that the estimate of the local error is the local error in motions that the step resolves,
+// that components which the step does not resolve do not count, and that the controller attains its
+// target error.
 #include "fem/dynamics/integrators/step_control.h"
 
 #include <gtest/gtest.h>
@@ -20,9 +21,9 @@ namespace {
 using testing::exact_swing;
 using testing::Oscillators;
 
-constexpr double kAny = 1e300;  // an allowed error
+constexpr double kUnlimited = 1e300;  // an allowed error that accepts every step
 
-AlphaSettings sharp(double rho_inf) {
+AlphaSettings crisp(double rho_inf) {
   AlphaSettings settings;
   settings.rho_inf = rho_inf;
   settings.tolerance = 1e-14;
@@ -34,14 +35,15 @@ struct Missed {
   double ratio() const { return estimate / exact; }
 };
 
-/// One step from the exact motion, its algorithmic acceleration q̈(t + δ h).
+/// Returns the error of one step from the exact motion with the algorithmic acceleration q̈(t + δ
+/// h).
 Missed miss_of_oscillator(double rho_inf, double omega, double h, double t = 0.3) {
   const Oscillators exact{{omega, omega}};
   Workspace model = exact.model();
-  GeneralizedAlpha alpha(model, sharp(rho_inf));
+  GeneralizedAlpha alpha(model, crisp(rho_inf));
   State x = exact.at(t);
   alpha.set_alpha(exact.at(t + alpha.shift() * h).a);
-  const TriedStep step = alpha.try_step(x, h, kAny);
+  const TriedStep step = alpha.try_step(x, h, kUnlimited);
   EXPECT_TRUE(step.converged);
   // The size of this model is 1 m.
   return {step.error, (x.q - exact.at(t + h).q).lpNorm<Eigen::Infinity>()};
@@ -50,7 +52,7 @@ Missed miss_of_oscillator(double rho_inf, double omega, double h, double t = 0.3
 Missed miss_of_pendulum(double rho_inf, double h) {
   constexpr double t = 0.4;
   Workspace model = testing::particle_pendulum();
-  GeneralizedAlpha alpha(model, sharp(rho_inf));
+  GeneralizedAlpha alpha(model, crisp(rho_inf));
   const auto acceleration = [](double at) -> Vec2 {
     const testing::Swing s = exact_swing(at);
     const double spin = -testing::kGravity / testing::kLength * std::sin(s.angle);
@@ -66,13 +68,13 @@ Missed miss_of_pendulum(double rho_inf, double h) {
   VectorXd shifted = VectorXd::Zero(x.a.size());
   shifted.head<2>() = acceleration(t + alpha.shift() * h);
   alpha.set_alpha(shifted);
-  const TriedStep step = alpha.try_step(x, h, kAny);
+  const TriedStep step = alpha.try_step(x, h, kUnlimited);
   return {step.error,
           (x.q - exact_swing(t + h).position()).lpNorm<Eigen::Infinity>() / testing::kLength};
 }
 
 class LocalError : public ::testing::TestWithParam<double> {};
-// δ h is a multiple of the pendulum's table for all of them.
+// For each of these values δ h is a multiple of the step of the pendulum's table.
 INSTANTIATE_TEST_SUITE_P(RhoInf, LocalError, ::testing::Values(0.0, 0.5, 0.8, 1.0),
                          [](const auto& rho) {
                            return "rho" +
@@ -81,13 +83,13 @@ INSTANTIATE_TEST_SUITE_P(RhoInf, LocalError, ::testing::Values(0.0, 0.5, 0.8, 1.
 
 TEST_P(LocalError, ConstantIsThatOfTheExpansion) {
   Workspace model = testing::particle_pendulum();
-  const GeneralizedAlpha alpha(model, sharp(GetParam()));
+  const GeneralizedAlpha alpha(model, crisp(GetParam()));
   const double shift = (GetParam() - 1) / (GetParam() + 1);
   EXPECT_NEAR(alpha.shift(), shift, 1e-15);
   EXPECT_NEAR(alpha.error_constant(), -(1.0 / 12 + shift * shift / 4), 1e-15);
 }
 
-// Estimate / error = 1 + O(h): it halves its distance with h.
+// Estimate / error = 1 + O(h); the distance from one halves with h.
 TEST_P(LocalError, OfAnOscillatorIsEstimated) {
   std::vector<double> off;
   for (const double h : {0.02, 0.01, 0.005}) {
@@ -112,10 +114,10 @@ TEST_P(LocalError, OfAPendulumIsEstimated) {
   EXPECT_NEAR(off[1] / off[2], 2, 0.7);
 }
 
-/// Steps over 2 s of oscillators, as the estimate lets them be.
+/// Returns the number of steps over 2 s of oscillators with the step control.
 int steps_over(const Oscillators& exact, double tolerance, double* error = nullptr) {
   Workspace model = exact.model();
-  GeneralizedAlpha alpha(model, sharp(0.8));
+  GeneralizedAlpha alpha(model, crisp(0.8));
   AdaptiveStep settings;
   settings.tolerance = tolerance;
   StepControl control(settings, 2);
@@ -135,7 +137,8 @@ int steps_over(const Oscillators& exact, double tolerance, double* error = nullp
   return alpha.counts().steps;
 }
 
-// The second oscillator, of 480 Hz, swings by less than the tolerance: steps need not resolve it.
+// The second oscillator, at 480 Hz, has an amplitude below the tolerance: the steps need not
+// resolve it.
 TEST(Filter, ForgetsWhatTheStepDoesNotResolve) {
   for (const double tolerance : {1e-3, 1e-4}) {
     const int slow = steps_over({{3, 3}}, tolerance);
@@ -148,7 +151,8 @@ TEST(Filter, ForgetsWhatTheStepDoesNotResolve) {
   }
 }
 
-// One of 40 Hz, near to what the step resolves, swings by a tenth of the tolerance.
+// A second oscillator at the limit of the resolved frequencies has a tenth of the tolerance as
+// amplitude.
 TEST(Filter, DoesNotFollowWhatIsBelowTheTolerance) {
   for (const double tolerance : {1e-4, 1e-5}) {
     const int slow = steps_over({{3, 3}}, tolerance);
@@ -170,16 +174,17 @@ TEST(StepControl, LandsWithTwoEqualSteps) {
   EXPECT_EQ(control.next(1), 0.3);
   EXPECT_EQ(control.next(0.5), 0.25);
   EXPECT_EQ(control.next(0.25), 0.25);
-  EXPECT_EQ(control.next(0.3001), 0.3001);  // rather than another one of 0.1 ms
+  EXPECT_EQ(control.next(0.3001), 0.3001);  // avoids another step of 0.1 ms
   EXPECT_DOUBLE_EQ(control.allowed(), 1e-6);
 }
 
-// Errors ∝ h³: the step settles where they are allowed, and then stays what it is to the bit.
+// With errors ∝ h³ the step converges to a value below the allowed error and is then constant to
+// the bit.
 TEST(StepControl, SettlesBelowTheAllowedError) {
   StepControl control({}, 100);
   control.begin(1e-3);
   double h = 0;
-  const double best = 0.05;  // meets the allowed error
+  const double best = 0.05;  // has the allowed error
   int rejected = 0, changes = 0;
   for (int k = 0; k < 60; ++k) {
     const double last = h;

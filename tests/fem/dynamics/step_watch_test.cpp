@@ -1,4 +1,5 @@
-// Multipliers that alternate from step to step: told from those that vary, or alternate and die.
+// Shows that multipliers that alternate from step to step are distinguished from multipliers that
+// vary smoothly or whose alternation is damped.
 #include "fem/dynamics/integrators/step_watch.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// A rod on a pin: its rows are those of its axis (0) and of the pin (1, 2).
+/// Returns a rod on a pin: its rows are the unit axis (0) and the pin (1, 2).
 Model rod() {
   Model out;
   std::vector<std::unique_ptr<Term>> terms;
@@ -25,8 +26,8 @@ Model rod() {
   return out;
 }
 
-/// Sees n steps of 1e-3 s with the multiplier `of` the step's number in the pin's second row, 100 N
-/// in the others.
+/// Runs the watch over n steps of 1e-3 s with the multiplier of(k) in the pin's second row and 100
+/// N in the other rows.
 template <class Of>
 std::optional<Alternation> seen(int n, const Of& of) {
   const Model model = rod();
@@ -51,14 +52,14 @@ TEST(MultiplierWatch, FindsWhatAlternates) {
 
 TEST(MultiplierWatch, LeavesWhatVariesOrIsDamped) {
   using std::numbers::pi;
-  // Nine steps a period; alternating, but too little; alternating, and damped as rho_inf = 0.9
-  // does.
+  // A period of nine steps; a small alternation; an alternation that is damped as with rho_inf =
+  // 0.9.
   EXPECT_FALSE(seen(1000, [](int k) { return 50 * std::sin(2 * pi * k / 9); }));
   EXPECT_FALSE(seen(1000, [](int k) { return 50 + 0.2 * sign(k); }));
   EXPECT_FALSE(seen(1000, [](int k) { return 50 + 20 * sign(k) * std::pow(0.9, k); }));
 }
 
-// What is seen on steps of one length says nothing on those of another.
+// Observations with one step size do not count for another step size.
 TEST(MultiplierWatch, BeginsAnewWithEveryLengthOfStep) {
   const Model model = rod();
   MultiplierWatch watch;
@@ -71,8 +72,8 @@ TEST(MultiplierWatch, BeginsAnewWithEveryLengthOfStep) {
   EXPECT_FALSE(watch.found());
 }
 
-// A blow between two steps sets off multipliers that alternate and grow with rho_inf = 1, and die
-// out with 0.9.
+// A jump of the velocity between two steps causes multipliers that alternate and grow with rho_inf
+// = 1 and decay with 0.9.
 TEST(MultiplierWatch, SeesWhatRhoInfDoesNotDamp) {
   for (const double rho : {1.0, 0.9}) {
     Workspace model(rod());

@@ -1,5 +1,6 @@
-// A motion as a value, and changes of its mesh as linear maps: the values that interpolation gives
-// in closed form, transposed as it should be, and the same that the motion does.
+// Shows that a trajectory contains the requested states, and that changes of its mesh are linear
+// maps: they have the closed-form values of the interpolation, the right transposed maps, and the
+// effect of the changes in the motion.
 #include "fem/dynamics/trajectory.h"
 
 #include <gtest/gtest.h>
@@ -31,24 +32,25 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Values(MeshChange::insertion, MeshChange::removal),
                        ::testing::Values(2, 3)));
 
-/// Two plates in the plane or in space whose root lines move, with rates and accelerations.
+/// Returns two plates in the plane or in space whose root lines move with rates and accelerations.
 Workspace plates(ShapeSet shapes, int dim) {
   Workspace out;
   for (const char* name : {"first", "second"}) {
-    std::vector<MaterialLine> m = testing::even_lines(0, 0.4, 4);
+    std::vector<MaterialLine> m = testing::uniform_lines(0, 0.4, 4);
     m[0] = testing::swinging_line(0.02, 0.015, 3);
     std::vector<std::unique_ptr<Term>> terms;
     terms.push_back(make_inertia({0.01, 1e8, 0.3, 2700}));
     out.add_body(
         name,
-        std::make_unique<AncfPlate>(dim, shapes, std::move(m), testing::even_lines(0, 0.1, 2)), {},
-        std::move(terms));
+        std::make_unique<AncfPlate>(dim, shapes, std::move(m), testing::uniform_lines(0, 0.1, 2)),
+        {}, std::move(terms));
   }
   out.prepare(0.3);
   return out;
 }
 
-// <A x, y> = <x, Aᵀ y> for all three vectors together: rates of positions enter accelerations.
+// <A x, y> = <x, Aᵀ y> for all three vectors together, because rates of positions enter
+// accelerations.
 TEST_P(EveryMeshMap, AndItsTransposedAreAdjoint) {
   const auto [shapes, change, dim] = GetParam();
   Workspace model = plates(shapes, dim);
@@ -66,18 +68,18 @@ TEST_P(EveryMeshMap, AndItsTransposedAreAdjoint) {
   }
 }
 
-// Rows of the new node on the lower edge: cubic Hermite functions in the middle of an element of
-// length l, f = (f₁ + f₂)/2 + l (f₁' - f₂')/8, f' = 3 (f₂ - f₁)/(2 l) - (f₁' + f₂')/4.
+// Rows of the new node on the lower edge are cubic Hermite functions in the middle of an element of
+// length l: f = (f₁ + f₂)/2 + l (f₁' - f₂')/8, f' = 3 (f₂ - f₁)/(2 l) - (f₁' + f₂')/4.
 TEST(MeshMap, HasTheValuesOfCubicsInTheMiddle) {
   Workspace model = plates(ShapeSet::h16, 2);
   const Body& body = model.bodies()[0];
   const LineGrid& plate = grid_of(body);
   const MeshMap map(body, MeshChange::insertion, model.n_dofs());
   const double l = plate.line_m(1).value - plate.line_m(0).value;
-  const int column = 2 * plate.per_node() * (plate.n_n() + 1);  // of one line of nodes
+  const int column = 2 * plate.per_node() * (plate.n_n() + 1);  // unknowns of one line of nodes
   MeshMap::Vectors unit{VectorXd::Zero(map.n_before()), VectorXd::Zero(map.n_before()),
                         VectorXd::Zero(map.n_before())};
-  const auto rows = [&](int at) {  // value and derivative of the new node by an unknown
+  const auto rows = [&](int at) {  // value and derivative of the new node by one unknown
     unit.q.setZero();
     unit.q[at] = 1;
     const VectorXd q = map.apply(unit).q;
@@ -89,8 +91,8 @@ TEST(MeshMap, HasTheValuesOfCubicsInTheMiddle) {
   EXPECT_LT((rows(column + 2) - Vec2(-l / 8, -0.25)).norm(), 1e-13);
 }
 
-// The rates of a field that lines are drawn over: B and C are the first and second derivative of A
-// by the time at which the new material point is looked at.
+// Lines move through the field, so that B and C of the map are the first and second derivative of A
+// by time at the fixed material point of the new node.
 TEST(MeshMap, RatesAreThoseOfTheFieldAtItsMaterialPoint) {
   Workspace model = plates(ShapeSet::h16, 2);
   const State reference = model.reference();
@@ -115,7 +117,7 @@ TEST(MeshMap, RatesAreThoseOfTheFieldAtItsMaterialPoint) {
   EXPECT_LT((after.a.segment<2>(column) - (later - 2 * there + earlier) / (h * h)).norm(), 1e-3);
 }
 
-/// @param scene  is left with the mesh of the end
+/// @param scene  receives the scene with its final mesh
 MotionResult move(Keep keep, testing::Scene& scene) {
   RotatingPlate p;
   p.speed = 0.5;
@@ -125,7 +127,7 @@ MotionResult move(Keep keep, testing::Scene& scene) {
   settings.step = 2e-3;
   settings.stops = {0.05, 0.101, 0.2};
   settings.keep = keep;
-  return integrate(scene.model, scene.growths, settings, [](const MotionStep&) {});
+  return integrate(scene.model, scene.moving_roots, settings, [](const MotionStep&) {});
 }
 
 TEST(Trajectory, ChangesOfTheMeshAreWhatTheMotionDid) {
@@ -143,8 +145,8 @@ TEST(Trajectory, ChangesOfTheMeshAreWhatTheMotionDid) {
     change.map.carry(carried);
     ASSERT_EQ(carried.q.size(), after.q.size());
     if (&change != &motion.changes.back()) continue;
-    // Then forces are balanced and velocities moved onto the constraints, here on the mesh of the
-    // end.
+    // After the last change, forces are balanced and velocities are projected onto the constraints
+    // on the final mesh.
     scene.model.prepare(carried);
     balance_forces(scene.model, carried, separating_frequency(scene.model.bodies()[0]));
     const VectorXd sizes = scene.model.scales();

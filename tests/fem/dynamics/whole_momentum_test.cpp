@@ -1,8 +1,8 @@
-// Shows that the momentum of all bodies is that of the textbook, in bodies that move rigidly.
-#include "fem/dynamics/whole_momentum.h"
-
+// Shows that linear and angular momentum of all bodies equal the formulas of rigid-body mechanics
+// when the bodies move rigidly.
 #include <gtest/gtest.h>
 
+#include "fem/dynamics/total_momentum.h"
 #include "fem/terms.h"
 #include "tests/support/models.h"
 #include "tests/support/rigid_models.h"
@@ -10,8 +10,8 @@
 namespace flexmorph::fem {
 namespace {
 
-// P = m c', L = m c × c' + J ω of each; of a plate c is its middle and J = m (l² + w²)/12.
-TEST(WholeMomentum, IsThatOfRigidBodies) {
+// Each body has P = m c', L = m c × c' + J ω; for a plate c is its centre and J = m (l² + w²)/12.
+TEST(TotalMomentum, IsThatOfRigidBodies) {
   Workspace model;
   PlaneSection section{0.01, 1e8, 0.3, 2700};
   std::vector<std::unique_ptr<Term>> terms;
@@ -19,8 +19,8 @@ TEST(WholeMomentum, IsThatOfRigidBodies) {
   terms.push_back(make_membrane(section));
   model.add_body(
       "plate",
-      std::make_unique<AncfPlate>(2, testing::ShapeSet::h16, testing::even_lines(0, 0.6, 3),
-                                  testing::even_lines(-0.1, 0.1, 1)),
+      std::make_unique<AncfPlate>(2, testing::ShapeSet::h16, testing::uniform_lines(0, 0.6, 3),
+                                  testing::uniform_lines(-0.1, 0.1, 1)),
       section, std::move(terms));
   testing::add_rigid(model, "block", {3, {0.2, -0.1}, 0.5});
   State x = model.reference();
@@ -44,12 +44,12 @@ TEST(WholeMomentum, IsThatOfRigidBodies) {
   const Vec2 linear = mass * of_plate + 3 * of_block;
   const double angular = mass * cross(middle, of_plate) + mass * (0.36 + 0.04) / 12 * spin +
                          3 * cross(center, of_block) - 0.5 * 2;
-  const WholeMomentum all = whole_momentum(model, x);
+  const TotalMomentum all = total_momentum(model, x);
   EXPECT_LT((all.linear - linear).norm(), 1e-13 * linear.norm());
   EXPECT_NEAR(all.angular, angular, 1e-13 * std::abs(angular));
 
   x.v.setZero();
-  EXPECT_EQ(whole_momentum(model, x).angular, 0);
+  EXPECT_EQ(total_momentum(model, x).angular, 0);
 }
 
 }  // namespace

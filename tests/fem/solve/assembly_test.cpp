@@ -1,5 +1,5 @@
-// Shows that mechanisms are put together with the smallest motion of mass, and that what cannot be
-// put together is named.
+// Shows that mechanisms are assembled with the smallest motion of mass, and that joints which
+// cannot be assembled are named.
 #include "fem/solve/assembly.h"
 
 #include <gtest/gtest.h>
@@ -21,18 +21,18 @@ using testing::error_of;
 using testing::FourBar;
 using testing::linear;
 using testing::LinearRow;
-using testing::places;
+using testing::locations;
+using testing::mentions;
 using testing::point_model;
 using testing::Rod;
-using testing::says;
 using Parts = std::vector<LinearRow::Part>;
 
-// Two masses on a rod: they are drawn together along their line, their centre of mass rests, and
-// the speeds along the rod become equal as in an inelastic impact. All masses count 1e-8 of the
-// mean mass more than they are (assembly.h).
+// Two masses at a rod are moved along the line between them, their centre of mass does not move,
+// and the speeds along the rod become equal as in an inelastic impact. Every mass is increased by
+// 1e-8 of the mean mass (assembly.h).
 TEST(Assembly, MovesTheLeastMass) {
   const double extra = 1e-8 * 2.5, m1 = 1 + extra, m2 = 4 + extra, length = 2;
-  Workspace model = point_model(places({{0, 0}, {3, 4}}), Vec2(1, 4));
+  Workspace model = point_model(locations({{0, 0}, {3, 4}}), Vec2(1, 4));
   add<Rod>(model, "rod", 0, 1, constant(length));
   State x = model.reference();
   x.v << 1, 2, -3, 1;
@@ -44,12 +44,12 @@ TEST(Assembly, MovesTheLeastMass) {
   const double impulse = m1 * m2 / (m1 + m2) * (v2 - v1).dot(along);
   EXPECT_LT((x.v.head<2>() - (v1 + impulse / m1 * along)).norm(), 1e-12);
   EXPECT_LT((x.v.tail<2>() - (v2 - impulse / m2 * along)).norm(), 1e-12);
-  EXPECT_NEAR(report.displacement, 0.8 * 3 * m2 / (m1 + m2), 1e-12);  // y of the light one
+  EXPECT_NEAR(report.displacement, 0.8 * 3 * m2 / (m1 + m2), 1e-12);  // y of the lighter mass
   EXPECT_LE(report.iterations, 12);
 }
 
-// Starts 20 % of the mechanism's size away: the closed form again, velocities against differences
-// of it.
+// From starts that are up to 20 % of the length of the coupler away, positions must equal the
+// closed form and velocities differences of it.
 TEST(Assembly, FourBarFromAStartFarOff) {
   const FourBar bar;
   const double speed = 3;
@@ -63,16 +63,16 @@ TEST(Assembly, FourBarFromAStartFarOff) {
     for (double& entry : x.q) entry += off(random);
     for (double& entry : x.v) entry += off(random);
     most = std::max(most, assemble(model, x).iterations);
-    const auto near = [&](double t) { return bar.places(angle + speed * t); };
+    const auto near = [&](double t) { return bar.locations(angle + speed * t); };
     EXPECT_LT((x.q - near(0)).lpNorm<Eigen::Infinity>(), 1e-12) << i;
     EXPECT_LT((x.v - testing::first_difference(near, 1e-3)).lpNorm<Eigen::Infinity>(), 1e-8) << i;
   }
   EXPECT_LE(most, 20);
 }
 
-// Ten times too far away and lying on top of each other: a rod that must grow and turn.
+// The points start ten times too far away, and a rod that is too short has to lengthen and rotate.
 TEST(Assembly, ConvergesFromFarAway) {
-  Workspace model = point_model(places({{10, 0.5}, {10.1, -0.3}, {-8, 3}}));
+  Workspace model = point_model(locations({{10, 0.5}, {10.1, -0.3}, {-8, 3}}));
   add<Rod>(model, "a", 0, -1, constant(1));
   add<Rod>(model, "b", 0, 1, constant(0.5));
   add<Rod>(model, "c", 1, 2, constant(0.5));
@@ -83,8 +83,8 @@ TEST(Assembly, ConvergesFromFarAway) {
   EXPECT_NEAR((x.q.tail<2>() - x.q.segment<2>(2)).norm(), 0.5, 1e-12);
 }
 
-// A ladder of 500 braced cells held at one end: Φ_q M⁻¹ Φ_qᵀ has a condition of 1e11, which δ must
-// not spoil; 2000 rows.
+// In a chain of 500 braced cells held at one end, Φ_q M⁻¹ Φ_qᵀ has a condition number of 1e11; the
+// increase δ of the masses must not spoil the solution of the 2000 rows.
 TEST(Assembly, LongLadder) {
   const int cells = 499;
   std::vector<Vec2> points;
@@ -92,7 +92,7 @@ TEST(Assembly, LongLadder) {
     points.emplace_back(i, 0);
     points.emplace_back(i + 0.1 * std::sin(3.0 * i), 1);
   }
-  Workspace model = point_model(places(points));
+  Workspace model = point_model(locations(points));
   std::vector<std::pair<int, int>> rods;
   for (int a = 0; a + 1 < 2 * (cells + 1); ++a)
     for (const int b : {a + 1, a + 2})
@@ -117,27 +117,28 @@ TEST(Assembly, LongLadder) {
   EXPECT_LT(worst, 1e-12 * cells);
 }
 
-// The rods do not reach each other: the gap that remains is what a chain stretched by least squares
-// leaves, 0.4 m shared by two rods.
+// The rods are too short to meet. The remaining gap is that of a least-squares solution: two rods
+// share 0.4 m.
 TEST(Assembly, TooShortRodsAreNamed) {
-  Workspace model = point_model(places({{0.3, 0.4}}));
+  Workspace model = point_model(locations({{0.3, 0.4}}));
   add<Rod>(model, "left", 0, -1, constant(0.3));
   add<Rod>(model, "right", 0, -1, constant(0.3), Vec2(1, 0));
   State x = model.reference();
   const std::string text = error_of(Error::Kind::numerical, [&] { assemble(model, x); });
-  EXPECT_TRUE(says(text, "'left'") && says(text, "'right'") && says(text, "iterations")) << text;
+  EXPECT_TRUE(mentions(text, "'left'") && mentions(text, "'right'") && mentions(text, "iterations"))
+      << text;
   EXPECT_NEAR(x.q[0], 0.5, 1e-2) << text;
   EXPECT_NEAR(x.q[1], 0, 1e-2) << text;
 }
 
 TEST(Assembly, VelocitiesThatContradictAreNamed) {
-  Workspace model = point_model(places({{1, 0}}));
+  Workspace model = point_model(locations({{1, 0}}));
   add<Rod>(model, "rod", 0, -1, constant(1));
   add<LinearRow>(model, "y", Parts{{0, 1}}, constant(0));
   add<LinearRow>(model, "pull", Parts{{0, 0}}, linear(1, 0.5));
   State x = model.reference();
   const std::string text = error_of(Error::Kind::numerical, [&] { assemble(model, x); });
-  EXPECT_TRUE(says(text, "no velocity")) << text;
+  EXPECT_TRUE(mentions(text, "no velocity")) << text;
 }
 
 TEST(Assembly, RedundantRodsDoNoHarm) {
@@ -147,7 +148,7 @@ TEST(Assembly, RedundantRodsDoNoHarm) {
   State x = model.reference();
   for (int i = 0; i < 4; ++i) x.q[i] += 0.05 * std::cos(2.0 * i);
   assemble(model, x);
-  EXPECT_LT((x.q - bar.places(0.9)).lpNorm<Eigen::Infinity>(), 1e-11);
+  EXPECT_LT((x.q - bar.locations(0.9)).lpNorm<Eigen::Infinity>(), 1e-11);
 }
 
 TEST(Assembly, BadStartsAreRefused) {

@@ -1,7 +1,8 @@
-// Shows that the solver of large matrices that are symmetric but for a border solves: what the
-// multifrontal factor leaves of a border, and solutions (transposed, too) against a dense LU, with
-// an unsymmetric block, constraints at an edge, pins inside and further bodies; that it finds the
-// border, refuses what it cannot take, and is the same bit for bit when put back.
+// Shows that the solver of large matrices that are symmetric except for a border solves: the Schur
+// complement of the border and solutions (transposed, too) agree with a dense LU, with an
+// unsymmetric block, constraints at an edge, pins inside and further bodies. Shows also that it
+// finds the border, refuses unsuitable matrices, and gives equal bits after a restart from an
+// archive.
 #include "fem/solve/factorization/bordered_cholesky.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@
 namespace flexmorph::fem {
 namespace {
 
-/// Lower triangle of the first n columns.
+/// Lower triangle of the first n columns of a matrix.
 struct Lower {
   std::vector<int> starts = {0}, rows;
   std::vector<double> values;
@@ -32,8 +33,8 @@ struct Lower {
   }
 };
 
-// Scattered rows of the border, some trees of the elimination without any: S = C - E K⁻¹ Eᵀ, L as
-// ever. Condition below 1e2.
+// The rows of the border are scattered, and some elimination trees have none: S = C - E K⁻¹ Eᵀ. The
+// condition number is below 1e2.
 TEST(Multifrontal, LeavesTheSchurComplementOfTheBorder) {
   constexpr int kInner = 60, kBorder = 7, kAll = kInner + kBorder;
   std::mt19937 random(5);
@@ -56,12 +57,12 @@ TEST(Multifrontal, LeavesTheSchurComplementOfTheBorder) {
   EXPECT_LT((left - expected).triangularView<Eigen::Lower>().toDenseMatrix().norm(), 1e-13);
 }
 
-/// Nodes of a grid with two unknowns each, joined by springs along and across; material may flow
-/// through the first column of cells, and constraints hold the first nodes, or a node inside.
+/// Nodes of a grid with two unknowns each, coupled by springs along and across. Material may flow
+/// through the first column of cells, and constraints may hold the first nodes or a node inside.
 struct Strip {
   int nx = 50, ny = 16;
-  double flow = 0.3;    ///< of the unsymmetric part
-  double strength = 1;  ///< of the springs
+  double flow = 0.3;    ///< Factor of the unsymmetric entries.
+  double strength = 1;  ///< Factor of the springs.
   bool weld = true, pin = true, rigid = true;
 
   int node(int i, int j) const { return 2 * (i * ny + j); }
@@ -86,7 +87,7 @@ struct Strip {
         if (j + 1 < ny) couple(node(i, j), node(i, j + 1), 0.7 * k, i < 2 ? 0.2 * flow : 0);
       }
     int n = 2 * nx * ny;
-    if (rigid) {  // tied to a corner of the free end
+    if (rigid) {  // a rigid body that is joined to a corner of the free end
       for (int c = 0; c < 3; ++c) t.emplace_back(n + c, n + c, 3.0 + c);
       n += 3;
     }
@@ -117,7 +118,7 @@ struct Strip {
 
 VectorXd some(Eigen::Index n) { return VectorXd::LinSpaced(n, -1, 2).array().cos(); }
 
-/// Conditions are below 1e5.
+/// Compares solutions with a dense LU; condition numbers are below 1e5.
 void expect_solved(BorderedCholesky& solver, const SparseMatrix& a) {
   const VectorXd b = some(a.rows());
   const MatrixXd whole(a);
@@ -141,7 +142,7 @@ TEST(BorderedCholesky, SolvesWithAnUnsymmetricRootConstraintsAndOtherBodies) {
     }
 }
 
-// A symmetric matrix first (that of the masses): the border grows when material flows.
+// The first matrix is symmetric (like a mass matrix); the border grows when material flows.
 TEST(BorderedCholesky, WidensItsBorderAndKeepsItsAnalysis) {
   BorderedCholesky solver;
   const SparseMatrix symmetric = Strip{.flow = 0, .weld = false}.matrix(),
@@ -153,7 +154,7 @@ TEST(BorderedCholesky, WidensItsBorderAndKeepsItsAnalysis) {
   }
 }
 
-/// Q m Qᵀ but for what is among the border; that is what it is in m.
+/// Returns Q m Qᵀ, except for the entries between unknowns of the border, which remain those of m.
 MatrixXd turned(const MatrixXd& m, const std::vector<char>& border, const TurnedVectors& turn) {
   MatrixXd q = MatrixXd::Identity(m.rows(), m.cols());
   for (int k = turn.first; k < turn.last; k += 2)
@@ -165,12 +166,12 @@ MatrixXd turned(const MatrixXd& m, const std::vector<char>& border, const Turned
   return out;
 }
 
-// The strip turns by more than a right angle, constraints and the root have other values: the
-// factor of the rest is kept. Put back, it is the same bit for bit.
+// The strip rotates by more than 90 degrees, and constraints and root have other values; the factor
+// of the other unknowns is kept. A solver restored from an archive gives equal bits.
 TEST(BorderedCholesky, TurnsAndRenewsItsBorder) {
   const Strip strip;
   SparseMatrix a = strip.matrix();
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   solver.analyze(a);
   solver.factorize(a);
   const std::vector<char> border = solver.border();
@@ -191,24 +192,24 @@ TEST(BorderedCholesky, TurnsAndRenewsItsBorder) {
   solver.solve(a, b, x);
   EXPECT_LT((x - expected).norm(), 1e-10 * expected.norm());
 
-  Memory taken;
-  solver.remember(taken, a);
-  Memory put(taken.bytes());
-  UnsymmetricSolver again;
-  again.remember(put, a);
+  Archive taken;
+  solver.archive(taken, a);
+  Archive put(taken.bytes());
+  DirectSolver again;
+  again.archive(put, a);
   again.solve(a, b, y);
   EXPECT_EQ(x, y);
-  // What is factored anew has not turned.
+  // A new factorization has no rotation.
   solver.factorize(a);
   solver.solve(a, b, x);
   EXPECT_LT((a * x - b).norm(), 1e-12 * b.norm());
 }
 
-// A vector of which one entry belongs to the border cannot turn with the rest.
+// A vector of which only one entry belongs to the border cannot be rotated with the rest.
 TEST(BorderedCholesky, DoesNotTurnWhatTheBorderParts) {
   const Strip strip;
   const SparseMatrix a = strip.matrix();
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   solver.analyze(a);
   solver.factorize(a);
   EXPECT_FALSE(solver.renew_border(a, {{1, 2 * strip.nx * strip.ny - 1, 0, 1}}));
@@ -222,7 +223,7 @@ TEST(BorderedCholesky, RefusesWhatIsUnsymmetricOrNotDefinite) {
   SparseMatrix a = Strip{}.matrix();
   ASSERT_TRUE(solver.analyze(a));
   EXPECT_FALSE(solver.factorize(Strip{.strength = -1}.matrix()));
-  // Unsymmetric everywhere.
+  // The matrix is unsymmetric everywhere.
   for (int column = 0; column < a.cols(); ++column)
     for (SparseMatrix::InnerIterator entry(a, column); entry; ++entry)
       if (entry.row() < column) entry.valueRef() *= 1.1;
@@ -233,25 +234,25 @@ TEST(BorderedCholesky, RefusesWhatIsUnsymmetricOrNotDefinite) {
   EXPECT_FALSE(solver.analyze(one_way));
 }
 
-// What goes on with a solver put back goes on the same bit for bit, with a border that an earlier
-// matrix widened.
+// A solver restored from an archive continues with equal bits, also with a border that an earlier
+// matrix has widened.
 TEST(BorderedCholesky, RemembersItsBorder) {
   const SparseMatrix flowing = Strip{}.matrix(), other = Strip{.flow = 0}.matrix();
-  UnsymmetricSolver solver, again;
+  DirectSolver solver, again;
   solver.analyze(flowing);
   solver.factorize(flowing);
   solver.factorize(other);
-  Memory taken;
-  solver.remember(taken, other);
-  Memory put(taken.bytes());
-  again.remember(put, other);
+  Archive taken;
+  solver.archive(taken, other);
+  Archive put(taken.bytes());
+  again.archive(put, other);
   const VectorXd b = some(other.rows());
   VectorXd x, y;
   solver.solve(other, b, x, false);
   again.solve(other, b, y, false);
   EXPECT_EQ(x, y);
   EXPECT_TRUE(solver.is_cholesky());
-  // That of the whole matrix is another one.
+  // With refinement (the default) the solution is that of the whole matrix.
   solver.solve(other, b, x);
   EXPECT_LT((other * x - b).norm(), 1e-12 * b.norm());
   solver.solve_transposed(other, b, x);

@@ -1,4 +1,5 @@
-// The estimate of conditions: against exact ones, dense inverses, and what it must not depend on.
+// Shows that the estimate of condition numbers agrees with exact ones and with dense inverses, and
+// that it does not depend on units.
 
 #include "fem/solve/condition.h"
 
@@ -16,15 +17,16 @@ namespace {
 
 double norm1(const MatrixXd& a) { return a.cwiseAbs().colwise().sum().maxCoeff(); }
 
-/// Condition in the 1-norm of a matrix whose diagonal is made 1 from both sides.
+/// Returns the condition number in the 1-norm of a matrix scaled from both sides to a unit
+/// diagonal.
 double unit_condition(MatrixXd a) {
   const VectorXd d = a.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
   a = (d.asDiagonal() * a * d.asDiagonal()).eval();
   return norm1(a) * norm1(a.inverse());
 }
 
-// Second differences of n odd points: ‖T‖₁ = 4, the middle column of T⁻¹ is the largest and sums up
-// to (n + 1)²/8.
+// For second differences of an odd number n of points, ‖T‖₁ = 4, and the middle column of T⁻¹ has
+// the largest sum (n + 1)²/8.
 TEST(Condition, OfSecondDifferencesIsExact) {
   for (const int n : {3, 9, 99}) {
     MatrixXd t = MatrixXd::Zero(n, n);
@@ -36,7 +38,7 @@ TEST(Condition, OfSecondDifferencesIsExact) {
   }
 }
 
-// Hager's estimate is a lower bound, and seldom below a third.
+// Hager's estimate is a lower bound, and seldom below a third of the exact value.
 TEST(Condition, IsNearToThatOfTheDenseInverse) {
   std::mt19937 engine(3);
   std::normal_distribution<double> normal;
@@ -49,8 +51,8 @@ TEST(Condition, IsNearToThatOfTheDenseInverse) {
   }
 }
 
-// Millimetres beside metres, newtons beside kilonewtons: the same condition. Powers of two, so that
-// the scaled matrices are the same bit for bit.
+// The condition number must not depend on mixed units such as millimetres and metres. The scales
+// are powers of two, so that the scaled matrices have equal bits.
 TEST(Condition, DoesNotDependOnUnits) {
   MatrixXd a(4, 4);  // a saddle point matrix
   a << 4, 1, 0, 1, 1, 3, 1, 0, 0, 1, 5, 2, 1, 0, 2, 0;
@@ -72,7 +74,7 @@ TEST(Condition, IsInfiniteWhereNothingCanBeSolved) {
   EXPECT_EQ(condition_estimate(SparseMatrix(0, 0)), 1);
 }
 
-/// K of a solver by its answers to unit loads.
+/// Returns K of a solver from its solutions for unit loads.
 template <class Solve>
 MatrixXd stiffness_of(int n, const Solve& solve) {
   MatrixXd flexibility = MatrixXd::Identity(n, n);
@@ -80,8 +82,8 @@ MatrixXd stiffness_of(int n, const Solve& solve) {
   return flexibility.inverse();
 }
 
-// The entries behind the supernodes are those of K, wherever the order puts them; a thin void costs
-// digits.
+// The diagonal of K must be found in the supernodes for any order of the unknowns; a nearly void
+// row of cells raises the condition number.
 TEST(Condition, OfPlatesIsThatOfTheirStiffness) {
   const Grid g{.x0 = 0, .y0 = 0, .width = 1.2, .height = 0.5, .nx = 9, .ny = 5};
   const PlaneSection section{0.02, 3e5, 0.3, 0};
@@ -109,7 +111,8 @@ TEST(Condition, OfPlatesIsThatOfTheirStiffness) {
   EXPECT_GT(last, 1e6);
 }
 
-// Elliptic of second order: O(1/dx²) (Bank & Scott 1989, SIAM J. Numer. Anal. 26, 1383-1394).
+// For elliptic equations of second order the condition number is O(1/dx²) (Bank & Scott 1989, SIAM
+// J. Numer. Anal. 26, 1383-1394).
 TEST(Condition, OfPlatesGrowsWithTheSquareOfTheMesh) {
   std::vector<double> found;
   for (const int n : {8, 16, 32}) {

@@ -1,6 +1,6 @@
-// Shows that dependent joints are found: rank against a dense singular value decomposition, groups
-// against mechanisms where they are known, the watched condition against singular values; and that
-// plates come to their pins.
+// Shows that dependent joints are found: the rank agrees with a dense singular value decomposition,
+// groups with mechanisms where they are known, the watched condition number with singular values.
+// Shows also that plates are moved to their pins.
 #include "fem/solve/diagnosis.h"
 
 #include <gtest/gtest.h>
@@ -26,14 +26,14 @@ using testing::error_of;
 using testing::FourBar;
 using testing::linear;
 using testing::LinearRow;
-using testing::places;
+using testing::locations;
+using testing::mentions;
 using testing::point_model;
 using testing::Rod;
-using testing::says;
 using Parts = std::vector<LinearRow::Part>;
 using Names = std::vector<std::string>;
 
-FrameMotion at_place(const Vec2& origin, const Vec2& rate = {0, 0}) {
+FrameMotion at_location(const Vec2& origin, const Vec2& rate = {0, 0}) {
   FrameMotion f;
   f.origin = origin;
   f.origin_rate = rate;
@@ -47,15 +47,17 @@ Workspace pinned_plate(const std::vector<std::pair<std::string, Vec2>>& pins, co
   Workspace model;
   model.add_body(
       "plate",
-      std::make_unique<AncfPlate>(2, AncfPlate::ShapeSet::h16, testing::even_lines(0, 0.4, 3),
-                                  testing::even_lines(-0.05, 0.05, 2)),
+      std::make_unique<AncfPlate>(2, AncfPlate::ShapeSet::h16, testing::uniform_lines(0, 0.4, 3),
+                                  testing::uniform_lines(-0.05, 0.05, 2)),
       section, std::move(terms));
-  for (const auto& [name, place] : pins)
-    model.add_joint(make_pin(name, "plate", material, [p = place](double) { return at_place(p); }));
+  for (const auto& [name, location] : pins)
+    model.add_joint(
+        make_pin(name, "plate", material, [p = location](double) { return at_location(p); }));
   return model;
 }
 
-// Without mass the norm is that of displacements; pins are linear: one step.
+// Without mass the norm is that of displacements. Pins are linear; therefore one step is
+// sufficient.
 TEST(Assembly, PlatesComeToTheirPins) {
   for (const bool with_mass : {true, false}) {
     Workspace model = pinned_plate({{"pin", {0.11, -0.07}}}, {0.1, 0.02}, with_mass);
@@ -70,7 +72,7 @@ TEST(Assembly, PlatesComeToTheirPins) {
   }
 }
 
-TEST(Diagnosis, TwoPinsAtOnePlace) {
+TEST(Diagnosis, TwoPinsAtOneLocation) {
   Workspace twice = pinned_plate({{"pin_1", {0.1, 0}}, {"pin_2", {0.1, 0}}}, {0.1, 0});
   const Diagnosis redundant = diagnose(twice, twice.reference());
   EXPECT_EQ(redundant.rank, 2);
@@ -79,56 +81,59 @@ TEST(Diagnosis, TwoPinsAtOnePlace) {
   EXPECT_EQ(redundant.groups[0].joints, (Names{"pin_1", "pin_2"}));
   EXPECT_EQ(redundant.groups[0].surplus, 2);
   EXPECT_FALSE(redundant.is_contradictory());
-  EXPECT_EQ(describe(redundant), "joints 'pin_1', 'pin_2' hold the same 2 freedoms");
+  EXPECT_EQ(describe(redundant),
+            "joints 'pin_1', 'pin_2' constrain 2 degrees of freedom more than once");
 
   Workspace apart = pinned_plate({{"pin_1", {0.1, 0}}, {"pin_2", {0.112, 0}}}, {0.1, 0});
   State x = apart.reference();
   const Diagnosis diagnosis = diagnose(apart, x);
   EXPECT_TRUE(diagnosis.is_contradictory());
-  // R counts the weights of a pin inside an element, whose root of squares is below 1, as 1.
+  // The weights of a pin inside an element have a root sum of squares below 1, which R counts as 1.
   EXPECT_GE(diagnosis.groups[0].miss, 0.012);
   EXPECT_LE(diagnosis.groups[0].miss, 0.024);
-  EXPECT_TRUE(says(error_of(Error::Kind::input, [&] { require_independent(diagnosis); }),
-                   "joints 'pin_1', 'pin_2' contradict each other: they miss by"));
-  EXPECT_TRUE(
-      says(error_of(Error::Kind::numerical, [&] { assemble(apart, x); }), "contradict each other"));
+  EXPECT_TRUE(mentions(error_of(Error::Kind::input, [&] { require_independent(diagnosis); }),
+                       "joints 'pin_1', 'pin_2' contradict each other: their error is"));
+  EXPECT_TRUE(mentions(error_of(Error::Kind::numerical, [&] { assemble(apart, x); }),
+                       "contradict each other"));
 }
 
 TEST(Diagnosis, ContradictionsByValueRateAndAcceleration) {
   const auto diagnosis_of = [](const testing::Course& second) {
-    Workspace model = point_model(places({{1, 0}}));
+    Workspace model = point_model(locations({{1, 0}}));
     add<LinearRow>(model, "a", Parts{{0, 0}}, linear(1, 0.3));
     add<LinearRow>(model, "b", Parts{{0, 0}}, second);
     return diagnose(model, model.reference());
   };
-  EXPECT_EQ(describe(diagnosis_of(linear(1, 0.3))), "joints 'a', 'b' hold the same freedom");
+  EXPECT_EQ(describe(diagnosis_of(linear(1, 0.3))),
+            "joints 'a', 'b' constrain one degree of freedom more than once");
   EXPECT_EQ(describe(diagnosis_of(linear(1.012, 0.3))),
-            "joints 'a', 'b' contradict each other: they miss by 0.012 m");
+            "joints 'a', 'b' contradict each other: their error is 0.012 m");
   EXPECT_EQ(describe(diagnosis_of(linear(1, 0.5))),
-            "joints 'a', 'b' contradict each other: they miss by 0.2 m/s in velocity");
+            "joints 'a', 'b' contradict each other: their error is 0.2 m/s in velocity");
   EXPECT_EQ(describe(diagnosis_of([](double) {
               return Motion{1, 0.3, 2};
             })),
-            "joints 'a', 'b' contradict each other: they miss by 2 m/s² in acceleration");
+            "joints 'a', 'b' contradict each other: their error is 2 m/s² in acceleration");
 }
 
-// The last bits of drives that say the same in other words are no contradiction, also of a model at
-// rest, where nothing else says how large a rate is.
+// Round-off of drives that are equal in exact arithmetic is no contradiction, even in a model at
+// rest, where no other value gives the size of a rate.
 TEST(Diagnosis, RoundOffIsNoContradiction) {
   for (const Motion& second :
        {Motion{1, 1.9e-15, 0}, Motion{1, 0, 1.89e-15}, Motion{1 + 2e-16, 0, 0}}) {
-    Workspace model = point_model(places({{1, 0}}));
+    Workspace model = point_model(locations({{1, 0}}));
     add<LinearRow>(model, "a", Parts{{0, 0}}, linear(1, 0));
     add<LinearRow>(model, "b", Parts{{0, 0}}, [second](double) { return second; });
     EXPECT_EQ(describe(diagnose(model, model.reference())),
-              "joints 'a', 'b' hold the same freedom");
+              "joints 'a', 'b' constrain one degree of freedom more than once");
   }
 }
 
-// x_a = 0, x_b = 1 and x_b - x_a = 1: any two of the three are independent. Others stay out of it.
+// x_a = 0, x_b = 1 and x_b - x_a = 1: any two of the three are independent. Other joints do not
+// belong to the group.
 TEST(Diagnosis, ThreeJointsDependentOnlyTogether) {
   for (const double distance : {1.0, 1.25}) {
-    Workspace model = point_model(places({{0, 0}, {1, 0}, {2, 1}}));
+    Workspace model = point_model(locations({{0, 0}, {1, 0}, {2, 1}}));
     add<LinearRow>(model, "other", Parts{{0, 1}}, constant(0));
     add<LinearRow>(model, "a", Parts{{0, 0}}, constant(0));
     add<Rod>(model, "rod", 1, 2, constant(std::sqrt(2)));
@@ -141,7 +146,7 @@ TEST(Diagnosis, ThreeJointsDependentOnlyTogether) {
     EXPECT_EQ(d.groups[0].joints, (Names{"a", "b", "between"}));
     EXPECT_EQ(d.groups[0].contradictory, distance != 1.0);
     for (const Names& pair : {Names{"a", "b"}, Names{"a", "between"}, Names{"b", "between"}}) {
-      Workspace two = point_model(places({{0, 0}, {1, 0}}));
+      Workspace two = point_model(locations({{0, 0}, {1, 0}}));
       for (const auto& joint : pair) {
         if (joint == "a") add<LinearRow>(two, joint, Parts{{0, 0}}, constant(0));
         if (joint == "b") add<LinearRow>(two, joint, Parts{{1, 0}}, constant(1));
@@ -153,15 +158,15 @@ TEST(Diagnosis, ThreeJointsDependentOnlyTogether) {
   }
 }
 
-// A platform on three equal, parallel cranks: one too many, but only where the lengths are right.
-// From a start off, rows are independent; the assembled mechanism shows it.
+// A platform on three equal, parallel cranks has one redundant crank, but only if the lengths are
+// exact. The rows are independent at an inexact start and dependent in the assembled mechanism.
 TEST(Diagnosis, ThreeParallelCranks) {
   const Vec2 crank(0.2, 0.3);
   const std::vector<Vec2> ground = {{0, 0}, {1, 0}, {0.4, 0.5}};
   const auto model_with = [&](double third) {
     std::vector<Vec2> points;
     for (const Vec2& g : ground) points.push_back(g + crank);
-    Workspace model = point_model(places(points));
+    Workspace model = point_model(locations(points));
     for (int i = 0; i < 3; ++i)
       add<Rod>(model, "crank_" + std::to_string(i), i, -1,
                constant(crank.norm() * (i == 2 ? third : 1)), ground[static_cast<size_t>(i)]);
@@ -185,19 +190,19 @@ TEST(Diagnosis, ThreeParallelCranks) {
   EXPECT_FALSE(d.is_contradictory());
 }
 
-/// A chain of rigid links from one another's ends, the first on the ground; `last` pins its end
-/// there too, as often as it says.
+/// Returns a chain of rigid links, the first hinged to the ground; `last` hinges also hold its end
+/// at the ground.
 Workspace chain(int links, int last) {
   const RigidSection section{1, {0.05, 0}, 0.01};
   Workspace model;
   for (int i = 0; i < links; ++i) testing::add_rigid(model, "link" + std::to_string(i), section);
-  const auto add = [&](const std::string& name, const MarkerPlace& a, const MarkerPlace& b) {
+  const auto add = [&](const std::string& name, const MarkerLocation& a, const MarkerLocation& b) {
     model.add_joint(make_revolute(name, a, b));
   };
   for (int i = 0; i < links; ++i) {
-    const MarkerPlace before = i == 0
-                                   ? MarkerPlace{"", {0, 0}, 0, {}}
-                                   : MarkerPlace{"link" + std::to_string(i - 1), {0.1, 0}, 0, {}};
+    const MarkerLocation before =
+        i == 0 ? MarkerLocation{"", {0, 0}, 0, {}}
+               : MarkerLocation{"link" + std::to_string(i - 1), {0.1, 0}, 0, {}};
     add("pin" + std::to_string(i), before, {"link" + std::to_string(i), {0, 0}, 0, {}});
   }
   for (int k = 0; k < last; ++k)
@@ -206,8 +211,9 @@ Workspace chain(int links, int last) {
   return model;
 }
 
-// Grübler: 3 n - 2 for each pin. A thousand links take the quick way, which knows independent rows
-// only; what is dependent in a chain is found as before, and named.
+// By Grübler's formula, a pin removes 2 of 3 n degrees of freedom. A chain of a thousand links is
+// diagnosed by the fast method, which finds independent rows only; dependent joints of a shorter
+// chain are named.
 TEST(Diagnosis, ChainsOfRigidLinks) {
   const auto zigzag = [](Workspace& model, int links) {
     State x = model.reference();
@@ -230,13 +236,13 @@ TEST(Diagnosis, ChainsOfRigidLinks) {
   Workspace model = chain(20, 2);
   const Diagnosis found = diagnose(model, zigzag(model, 20));
   EXPECT_EQ(found.degrees_of_freedom(), 3 * 20 - 2 * 21);
-  EXPECT_EQ(describe(found), "joints 'end0', 'end1' hold the same 2 freedoms");
+  EXPECT_EQ(describe(found), "joints 'end0', 'end1' constrain 2 degrees of freedom more than once");
 }
 
-// The closed chain of an edge held three times at once: every surplus joint is named with one
-// other, not with all.
+// Of five conditions on two coordinates, each surplus joint is named with as few other joints as
+// possible.
 TEST(Diagnosis, NamesAsFewJointsAsItCan) {
-  Workspace model = point_model(places({{1, 0}, {2, 0}}));
+  Workspace model = point_model(locations({{1, 0}, {2, 0}}));
   add<LinearRow>(model, "a", Parts{{0, 0}}, constant(1));
   add<LinearRow>(model, "b", Parts{{0, 0}, {1, 0}}, constant(3));
   add<LinearRow>(model, "c", Parts{{0, 0}, {1, 0, -1}}, constant(-1));
@@ -259,7 +265,8 @@ MatrixXd dense_jacobian(Workspace& model, const State& x) {
   return MatrixXd(rows.jacobian());
 }
 
-// Random nets of rods: some with freedoms, some overbraced, some rods twice, some points driven.
+// Random frameworks of rods have some degrees of freedom, redundant rods, duplicate rods and held
+// points.
 TEST(Diagnosis, RankOfRandomMechanismsAgainstSingularValues) {
   std::mt19937 random(11);
   int dependent = 0;
@@ -289,7 +296,7 @@ TEST(Diagnosis, RankOfRandomMechanismsAgainstSingularValues) {
     for (const DependentGroup& g : d.groups) {
       surplus += g.surplus;
       EXPECT_FALSE(g.contradictory) << describe(d);
-      // The rows of a group are dependent, the independent ones are not.
+      // The rows of a group are dependent, the independent rows are not.
       MatrixXd part(g.rows.size(), j.cols());
       for (size_t i = 0; i < g.rows.size(); ++i)
         part.row(static_cast<Eigen::Index>(i)) = j.row(g.rows[i]);
@@ -304,15 +311,15 @@ TEST(Diagnosis, RankOfRandomMechanismsAgainstSingularValues) {
   EXPECT_GT(dependent, 15) << "too few of them show anything";
 }
 
-// Condition against the dense singular values, on the way of a four-bar to its dead centre; the
-// stretched rods are named.
+// The estimated condition number is compared with dense singular values while a four-bar approaches
+// its dead centre; the stretched rods are named.
 TEST(ConstraintWatch, ConditionOfAMechanismNearItsDeadCentre) {
   const FourBar bar{.r = 0.3, .l = 0.35, .s = 0.25, .g = 0.45};
   Workspace model = bar.model(linear(0, 0));
   ConstraintWatch watch(model);
   for (const double before : {0.5, 1e-2, 1e-4, 1e-6, 1e-8}) {
     State x = model.reference();
-    x.q = bar.places(bar.limit_angle() - before);
+    x.q = bar.locations(bar.limit_angle() - before);
     const VectorXd values = testing::singular_values(dense_jacobian(model, x));
     const double exact = values[0] / values[values.size() - 1];
     const Conditioning found = watch.look(x);
@@ -321,12 +328,12 @@ TEST(ConstraintWatch, ConditionOfAMechanismNearItsDeadCentre) {
     EXPECT_EQ(found.condition, constraint_condition(model, x));
     if (before > 1e-3) continue;
     EXPECT_TRUE(std::count(found.joints.begin(), found.joints.end(), "coupler")) << before;
-    EXPECT_TRUE(says(describe(found), "'rocker'")) << describe(found);
+    EXPECT_TRUE(mentions(describe(found), "'rocker'")) << describe(found);
   }
 }
 
 TEST(ConstraintWatch, SaturatesWhereRowsAreDependent) {
-  Workspace model = point_model(places({{1, 0}}));
+  Workspace model = point_model(locations({{1, 0}}));
   EXPECT_EQ(constraint_condition(model, model.reference()), 1);
   add<Rod>(model, "a", 0, -1, constant(1));
   add<Rod>(model, "b", 0, -1, constant(1));

@@ -1,5 +1,5 @@
 // Shows that driven mechanisms follow their closed-form motion to round-off, forwards and
-// backwards, and that where they cannot, the time and the joints are named.
+// backwards, and that the time and the joints are named where a motion is impossible.
 #include "fem/solve/kinematics.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using Parts = std::vector<LinearRow::Part>;
 
 constexpr double kPi = std::numbers::pi;
 
-/// What is said where the path ends, and the time in it.
+/// The message at the end of the possible motion, and its time.
 struct PathEnd {
   std::string text;
   double t = NAN;
@@ -49,9 +49,9 @@ PathEnd end_of_path(Workspace& model, double until) {
   return {};
 }
 
-// A crank that turns unevenly, through a revolution and back: positions against the circles'
-// intersection, rates against differences of it (fourth order, h = 1e-3: 1e-10 for rates and 1e-8
-// for second derivatives of a motion with pulsations up to 20).
+// A crank rotates with varying speed through a revolution and back. Positions are compared with the
+// intersection of circles, rates with differences of it (fourth order, h = 1e-3: 1e-10 for rates
+// and 1e-8 for second derivatives of a motion with angular frequencies up to 20).
 TEST(Kinematics, FourBarFollowsItsClosedForm) {
   const FourBar bar;
   const Course angle = [](double t) {
@@ -59,7 +59,7 @@ TEST(Kinematics, FourBarFollowsItsClosedForm) {
                   -7.5 * std::sin(5 * t)};
   };
   Workspace model = bar.model(angle);
-  const auto exact = [&](double t) { return bar.places(angle(t).value); };
+  const auto exact = [&](double t) { return bar.locations(angle(t).value); };
   Kinematics motion(model, model.reference());
   double position = 0, rate = 0, acceleration = 0;
   const auto look = [&](double t) {
@@ -78,16 +78,17 @@ TEST(Kinematics, FourBarFollowsItsClosedForm) {
   EXPECT_LT(acceleration, 1e-5);
 }
 
-// One call over ten revolutions finds its own substeps and stays on its branch.
+// One call over ten revolutions must find its own substeps and stay on its branch.
 TEST(Kinematics, KeepsToItsBranchOverLargeSteps) {
   const FourBar bar;
   const Course angle = linear(0.7, 2 * kPi);
   Workspace model = bar.model(angle);
   Kinematics motion(model, model.reference(), {.largest_step = 10});
-  EXPECT_LT((motion.at(10.4).q - bar.places(angle(10.4).value)).lpNorm<Eigen::Infinity>(), 1e-12);
+  EXPECT_LT((motion.at(10.4).q - bar.locations(angle(10.4).value)).lpNorm<Eigen::Infinity>(),
+            1e-12);
 }
 
-// Whoever only wants a look says how long it may take.
+// The number of steps can be limited, so that a very fast drive ends with an error.
 TEST(Kinematics, FastDrivesAreGivenUp) {
   const FourBar bar;
   const Course angle = [](double t) { return Motion{0.7 + 1e5 * t, 1e5, 0}; };
@@ -107,11 +108,11 @@ TEST(Kinematics, FastDrivesAreGivenUp) {
   EXPECT_GT(motion.state().t, 0);
 }
 
-// From rest, so that the prediction says nothing at first: x = t³.
+// x = t³ starts from rest, so that the prediction of the first step is zero.
 TEST(Kinematics, StartsFromRest) {
-  MatrixXd place(1, 2);
-  place << 0.0, 0.5;
-  Workspace model = testing::point_model(place);
+  MatrixXd location(1, 2);
+  location << 0.0, 0.5;
+  Workspace model = testing::point_model(location);
   add<LinearRow>(model, "x", Parts{{0, 0}}, [](double t) {
     return Motion{t * t * t, 3 * t * t, 6 * t};
   });
@@ -122,7 +123,8 @@ TEST(Kinematics, StartsFromRest) {
   EXPECT_NEAR(motion.at(-1).a[0], -6, 1e-11);
 }
 
-// Rods too short: the crank cannot pass the angle at which coupler and rocker are stretched.
+// The rods are too short: the crank cannot pass the angle at which coupler and rocker are
+// stretched.
 TEST(Kinematics, UnreachablePathNamesTheTime) {
   const FourBar bar{.r = 0.3, .l = 0.35, .s = 0.25, .g = 0.45};
   const double speed = 1.3, end = (bar.limit_angle() - 0.5) / speed;
@@ -130,18 +132,18 @@ TEST(Kinematics, UnreachablePathNamesTheTime) {
   const PathEnd found = end_of_path(model, 5);
   EXPECT_NEAR(found.t, end, 1e-6) << found.text;
   EXPECT_TRUE(found.names("coupler") && found.names("rocker")) << found.text;
-  // Backwards too: the limit lies at the mirrored angle.
+  // Backwards the limit is at the negative angle.
   const PathEnd before = end_of_path(model, -5);
   EXPECT_NEAR(before.t, (-bar.limit_angle() - 0.5) / speed, 1e-6) << before.text;
 }
 
-// A slider that pulls a crank: dead centre where crank and rod are stretched.
+// A slider pulls a crank to the dead centre where crank and rod are stretched.
 TEST(Kinematics, DeadCentreOfADrivenSlider) {
   const double r = 0.2, l = 0.5, x0 = 0.45, speed = 0.37;
   const double cosine = (r * r + x0 * x0 - l * l) / (2 * r * x0);
-  MatrixXd places(2, 2);
-  places << r * cosine, r * std::sqrt(1 - cosine * cosine), x0, 0.0;
-  Workspace model = testing::point_model(places);
+  MatrixXd locations(2, 2);
+  locations << r * cosine, r * std::sqrt(1 - cosine * cosine), x0, 0.0;
+  Workspace model = testing::point_model(locations);
   add<Rod>(model, "crank", 0, -1, constant(r));
   add<Rod>(model, "rod", 0, 1, constant(l));
   add<LinearRow>(model, "guide", Parts{{1, 1}}, constant(0));
@@ -152,8 +154,8 @@ TEST(Kinematics, DeadCentreOfADrivenSlider) {
   EXPECT_NE(found.text.find("dead centre"), std::string::npos);
 }
 
-// A parallelogram goes on both as parallelogram and crossed where it lies flat: the motion is
-// regular there, only the determinant tells.
+// Where a parallelogram is flat, it can continue as a parallelogram or crossed. The motion is
+// regular there; only the determinant shows the change point.
 TEST(Kinematics, ChangePointOfAParallelogram) {
   const FourBar bar{.r = 0.3, .l = 0.5, .s = 0.3, .g = 0.5};
   const double speed = 1.1, start = 0.8;
@@ -170,7 +172,7 @@ TEST(Kinematics, DriveThatJumpsIsNamed) {
   EXPECT_TRUE(found.names("motor") && !found.names("rocker")) << found.text;
 }
 
-// A motion that does not stop is followed although a drive's speed jumps.
+// A continuous motion is followed although the speed of a drive jumps.
 TEST(Kinematics, PassesKinksOfADrive) {
   const FourBar bar;
   const Course angle = [](double t) {
@@ -178,16 +180,17 @@ TEST(Kinematics, PassesKinksOfADrive) {
   };
   Workspace model = bar.model(angle);
   Kinematics motion(model, model.reference());
-  EXPECT_LT((motion.at(1).q - bar.places(angle(1).value)).lpNorm<Eigen::Infinity>(), 1e-12);
+  EXPECT_LT((motion.at(1).q - bar.locations(angle(1).value)).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
-// A second rocker rod between the same points: left out and watched.
+// A second rocker rod between the same points is left out of the solution, but its residual is
+// monitored.
 TEST(Kinematics, RedundantRowsAreWatched) {
   const FourBar bar;
   Workspace model = bar.model(linear(0.7, 1));
   add<Rod>(model, "second", 1, -1, constant(bar.s), Vec2(bar.g, 0));
   Kinematics motion(model, model.reference());
-  EXPECT_LT((motion.at(1).q - bar.places(1.7)).lpNorm<Eigen::Infinity>(), 1e-12);
+  EXPECT_LT((motion.at(1).q - bar.locations(1.7)).lpNorm<Eigen::Infinity>(), 1e-12);
 
   Workspace growing = bar.model(linear(0.7, 1));
   add<Rod>(
@@ -204,17 +207,18 @@ TEST(Kinematics, RedundantRowsAreWatched) {
 
 TEST(Kinematics, FreedomsThatAreLeftAreRefused) {
   const FourBar bar;
-  MatrixXd places(2, 2);
-  places << 0.2, 0, 0.3, 0.4;
-  Workspace model = testing::point_model(places);
+  MatrixXd locations(2, 2);
+  locations << 0.2, 0, 0.3, 0.4;
+  Workspace model = testing::point_model(locations);
   add<Rod>(model, "crank", 0, -1, constant(0.2));
   add<Rod>(model, "coupler", 0, 1, constant(0.5));
   try {
     Kinematics motion(model, model.reference());
-    FAIL() << "two freedoms are left";
+    FAIL() << "two degrees of freedom are left";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_NE(std::string(error.what()).find("2 freedoms are not driven"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("2 degrees of freedom are not driven"),
+              std::string::npos)
         << error.what();
   }
   Workspace driven = bar.model(linear(0.7, 1));

@@ -1,6 +1,6 @@
-// Shows that both ways of the linear solver solve: residuals and dense LU on matrices of dynamics
-// with and without symmetry; that matrices Cholesky cannot take go to UMFPACK; and that singular
-// and NaN matrices are refused.
+// Shows that both methods of the linear solver solve: residuals and dense LU on matrices of
+// dynamics with and without symmetry; that matrices unsuitable for Cholesky go to UMFPACK; and that
+// singular and NaN matrices are refused.
 #include "fem/solve/linear_solver.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@
 namespace flexmorph::fem {
 namespace {
 
-/// [A Bᵀ; B 0]: A of a chain of n masses and springs, B holds some of them together.
+/// A matrix [A Bᵀ; B 0]: A of a chain of n masses and springs, B couples some of them by
+/// constraints.
 struct Saddle {
   int n = 40, m = 3;
   double mass = 1, spring = 0.7, skew = 0, twice = 0;
@@ -29,7 +30,7 @@ struct Saddle {
     }
     for (int k = 0; k < m; ++k)
       for (int i = k; i < n; i += 7 + k) {
-        // `twice`: the last constraint becomes the first.
+        // With `twice` the last constraint is a copy of the first.
         const int from = twice != 0 && k == m - 1 ? 0 : k;
         const double value = from == k ? 0.5 + 0.1 * i : 0;
         t.emplace_back(n + k, i, value);
@@ -42,12 +43,12 @@ struct Saddle {
   }
 };
 
-void expect_solved(UnsymmetricSolver& solver, const SparseMatrix& a, bool refine) {
+void expect_solved(DirectSolver& solver, const SparseMatrix& a, bool refine) {
   const VectorXd b = VectorXd::LinSpaced(a.rows(), -1, 2).array().cos();
   const VectorXd expected = testing::solve(MatrixXd(a), b);
   VectorXd x;
   solver.solve(a, b, x, refine);
-  // Condition below 1e3: thirteen digits.
+  // The condition number is below 1e3, so that thirteen digits remain.
   EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm());
   EXPECT_LT((a * x - b).norm(), 1e-13 * b.norm());
   const VectorXd transposed = testing::solve(MatrixXd(a).transpose(), b);
@@ -56,8 +57,9 @@ void expect_solved(UnsymmetricSolver& solver, const SparseMatrix& a, bool refine
   EXPECT_LT((a.transpose() * x - b).norm(), 1e-13 * b.norm());
 }
 
-// A block of columns of a factor against the same columns of a whole dense triangle: widths that
-// are and are not made of eights and fours, heights likewise. Ten times round-off.
+// Substitution with a block of columns is compared with the columns in a whole dense triangle, for
+// widths and heights that are and are not multiples of four and eight. The tolerance is about ten
+// times round-off.
 TEST(LinearSolver, SubstitutionThroughABlockIsThatOfTheTriangle) {
   for (int width = 1; width <= 21; ++width)
     for (const int below : {0, 1, 5, 8, 19}) {
@@ -81,7 +83,7 @@ TEST(LinearSolver, SymmetricByCholeskyAndOthersByUmfpack) {
   for (const double skew : {0.0, 0.2})
     for (const int m : {0, 1, 3}) {
       const SparseMatrix a = Saddle{.m = m, .skew = skew}.matrix();
-      UnsymmetricSolver solver;
+      DirectSolver solver;
       solver.analyze(a);
       solver.factorize(a);
       EXPECT_EQ(solver.is_cholesky(), skew == 0);
@@ -89,9 +91,9 @@ TEST(LinearSolver, SymmetricByCholeskyAndOthersByUmfpack) {
     }
 }
 
-// The same solver, one matrix after the other: symmetric, with flow, not positive definite.
+// One solver gets one matrix after the other: symmetric, with flow, not positive definite.
 TEST(LinearSolver, ChoosesAtEveryFactorization) {
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   solver.analyze(Saddle{}.matrix());
   const auto is_cholesky = [&](const Saddle& s) {
     const SparseMatrix a = s.matrix();
@@ -105,22 +107,22 @@ TEST(LinearSolver, ChoosesAtEveryFactorization) {
   EXPECT_TRUE(is_cholesky({.spring = 0.3}));
 }
 
-// Material flow makes tangents a little unsymmetric. Where an outer iteration says what it bears,
-// the symmetric part stands for them: constraints are met all the same, x misses by less, and
-// repeating it with the rest as right side (what the outer iteration does) contracts by less each
-// time.
+// Material flow makes tangents slightly unsymmetric. If an outer iteration permits a relative
+// error, the symmetric part replaces the matrix: the constraints are still satisfied, the error of
+// x is below the limit, and repeated solution for the residual (as the outer iteration does)
+// reduces the error each time.
 TEST(LinearSolver, NearlySymmetricByTheSymmetricPartWhereAskedFor) {
   constexpr double kMiss = 0.02;
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   const SparseMatrix a = Saddle{.skew = 0.003}.matrix();
   const int n = Saddle{}.n, m = Saddle{}.m;
   solver.analyze(a);
   solver.factorize(a);
   EXPECT_FALSE(solver.is_cholesky());
   expect_solved(solver, a, false);
-  solver.factorize(Saddle{.skew = 0.1}.matrix(), kMiss);  // refused once ...
+  solver.factorize(Saddle{.skew = 0.1}.matrix(), kMiss);  // after one refusal ...
   EXPECT_FALSE(solver.is_cholesky());
-  solver.factorize(a, kMiss);  // ... is not tried again
+  solver.factorize(a, kMiss);  // ... the symmetric part is not tried again
   EXPECT_FALSE(solver.is_cholesky());
   solver.analyze(a);
   solver.factorize(a, kMiss);
@@ -142,10 +144,10 @@ TEST(LinearSolver, NearlySymmetricByTheSymmetricPartWhereAskedFor) {
   }
 }
 
-// Too far from symmetric for that: the whole matrix, as ever. Where Φ_q is not that of Φ_qᵀ both
-// belong to the border, which is solved as it is.
+// A matrix too far from symmetric is factorized as a whole. Where Φ_q and Φ_qᵀ differ, their
+// unknowns belong to the border, which is solved without symmetry.
 TEST(LinearSolver, FarFromSymmetricInAnyCaseByUmfpack) {
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   SparseMatrix a = Saddle{.skew = 0.1}.matrix();
   solver.analyze(a);
   solver.factorize(a, 0.02);
@@ -158,7 +160,7 @@ TEST(LinearSolver, FarFromSymmetricInAnyCaseByUmfpack) {
   expect_solved(solver, a, false);
 }
 
-// A free chain is singular; held by its constraint it is not.
+// A free chain is singular; with its constraint it is not.
 TEST(LinearSolver, BodyHeldByConstraintsOnly) {
   std::vector<Eigen::Triplet<double>> t;
   const int n = 10;
@@ -171,17 +173,17 @@ TEST(LinearSolver, BodyHeldByConstraintsOnly) {
   SparseMatrix a(n + 1, n + 1);
   a.setFromTriplets(t.begin(), t.end());
   a.makeCompressed();
-  UnsymmetricSolver solver;
+  DirectSolver solver;
   solver.analyze(a);
   solver.factorize(a);
-  EXPECT_TRUE(solver.is_cholesky());  // with the unknowns around the constraint in the border
+  EXPECT_TRUE(solver.is_cholesky());  // the unknowns around the constraint are in the border
   expect_solved(solver, a, true);
 }
 
 TEST(LinearSolver, RefusesSingularAndNotFinite) {
   for (const double skew : {0.0, 0.2}) {
     const SparseMatrix singular = Saddle{.skew = skew, .twice = 1}.matrix();
-    UnsymmetricSolver solver;
+    DirectSolver solver;
     solver.analyze(singular);
     EXPECT_THROW(solver.factorize(singular), Error);
     SparseMatrix a = Saddle{.skew = skew}.matrix();

@@ -1,5 +1,6 @@
-// The bilinear cell, and static analysis with one factorization for every root column: against
-// patch states, beam theory, and Eigen's own factorization of the matrix cut at the clamp.
+// Shows that the bilinear cell and the static analysis with one factorization for every root column
+// agree with patch states, beam theory, and Eigen's factorization of the matrix that is cut at the
+// clamp.
 
 #include "fem/solve/static_solver.h"
 
@@ -21,7 +22,7 @@ using Vector8 = Eigen::Matrix<double, 8, 1>;
 
 const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 
-/// u = strain . x + translation + rotation at the corners of a dx x dy cell.
+/// Returns u = strain . x + translation + rotation at the corners of a dx x dy cell.
 Vector8 linear_field(const Vec3& strain, const Vec3& rigid, double dx, double dy) {
   Vector8 u;
   for (std::size_t a = 0; a < 4; ++a) {
@@ -39,10 +40,10 @@ TEST(Q4, IsSymmetricAndRigidMotionsCostNothing) {
   const Vector8 u = linear_field(Vec3::Zero(), {0.4, -1.1, 0.7}, 0.3, 0.2);
   EXPECT_LT((K * u).cwiseAbs().maxCoeff(), 1e-14 * K.cwiseAbs().maxCoeff());
   const VectorXd values = testing::eigenvalues(K);
-  EXPECT_GT(values(3), 1e-3 * values(7));  // exactly three zeros
+  EXPECT_GT(values(3), 1e-3 * values(7));  // exactly three eigenvalues are zero
 }
 
-// Corner forces of a constant stress: half of the traction of each of the two edges.
+// The corner forces of a constant stress are half of the traction of each of the two edges.
 TEST(Q4, ConstantStrainGivesTheTractionsOfItsStress) {
   const double dx = 0.3, dy = 0.2, nu = kSection.poisson_ratio;
   const Vec3 strain{1e-3, -2e-3, 3e-3};
@@ -92,8 +93,8 @@ TEST(Q4, EnergyAndMassOfManyLoadsEqualTheMatrixProducts) {
   }
 }
 
-/// The stiffness of all nodes in front of column `root`, assembled cell by cell, dofs numbered
-/// from the root: nothing shared with the solver but the cell matrix.
+/// Returns the stiffness of all nodes behind column `root`, assembled cell by cell, with unknowns
+/// numbered from the root. Only the cell matrix is shared with the solver.
 Eigen::SparseMatrix<double> cut_stiffness(const Grid& g, const VectorXd& factor, int root) {
   const auto K = q4_stiffness(kSection, g.dx(), g.dy());
   std::vector<Eigen::Triplet<double>> entries;
@@ -118,7 +119,7 @@ Eigen::SparseMatrix<double> cut_stiffness(const Grid& g, const VectorXd& factor,
   return matrix;
 }
 
-/// Solution of one load clamped at `root` by Eigen, in the numbering of the solver.
+/// Returns the solution of one load clamped at `root` by Eigen, in the numbering of the solver.
 VectorXd refactored(const StaticSolver& solver, const VectorXd& factor, const VectorXd& load,
                     int root) {
   const Grid& g = solver.grid();
@@ -130,7 +131,8 @@ VectorXd refactored(const StaticSolver& solver, const VectorXd& factor, const Ve
       f.segment<2>(dof(i, j)) = load.segment<2>(solver.row(g.node(i, j), 0));
   }
   VectorXd u = testing::solve(K, f);
-  u += testing::solve(K, f - K * u);  // so that the reference is not what limits the comparison
+  // one refinement, so that the reference does not limit the comparison
+  u += testing::solve(K, f - K * u);
   for (int i = root + 1; i <= g.nx; ++i) {
     for (int j = 0; j <= g.ny; ++j)
       all.segment<2>(solver.row(g.node(i, j), 0)) = u.segment<2>(dof(i, j));
@@ -152,7 +154,7 @@ std::vector<std::vector<int>> root_column_orders() {
   return {{20, 17, 17, 11, 5, 4, 2}, {2, 3, 8, 13, 13, 21, 24}, {9, 2, 23, 2, 16, 4, 7}};
 }
 
-// Loads clamped at different columns, in falling, rising and mixed order.
+// The loads are clamped at different columns, in falling, rising and mixed order.
 TEST(StaticSolver, EveryRootColumnEqualsRefactoring) {
   StaticSolver solver(kGrid, kSection, 2);
   const VectorXd factor = random_factors(kGrid, 1e-3, 1);
@@ -170,7 +172,7 @@ TEST(StaticSolver, EveryRootColumnEqualsRefactoring) {
         continue;
       }
       const VectorXd expected = refactored(solver, factor, loads.row(l).transpose(), root);
-      // condition about 1e7: 1e-10 leaves a factor ten
+      // the condition number is about 1e7; 1e-10 includes a factor of ten
       EXPECT_LT((u.row(l).transpose() - expected).norm(), 1e-10 * expected.norm()) << root;
       for (int j = 0; j <= kGrid.ny; ++j) {
         if (solver.row(kGrid.node(root, j), 0) >= 0) {
@@ -240,7 +242,8 @@ TEST(StaticSolver, SquaresOfTheForwardSubstitutionAreCompliances) {
   }
 }
 
-/// Mean tip deflection under a uniform shear traction with resultant 1 N at the free end.
+/// Returns the mean tip deflection under a uniform shear traction with resultant 1 N at the free
+/// end.
 double tip_deflection(int nx, int ny) {
   const Grid g{0, 0, 1.0, 0.1, nx, ny};
   StaticSolver solver(g, kSection);
@@ -260,7 +263,7 @@ TEST(StaticSolver, CantileverConvergesToTimoshenko) {
   const double beam = 1 / (3 * E * I) + 1 / (5.0 / 6 * G * A);
   const double coarse = tip_deflection(40, 4), middle = tip_deflection(80, 8),
                fine = tip_deflection(160, 16);
-  // The clamp holds the Poisson strain of the root, which the beam does not know: 0.2 %.
+  // The clamp prevents the lateral contraction of the root, which the beam does not contain: 0.2 %.
   EXPECT_NEAR(fine, beam, 0.01 * beam);
   const double limit = fine + (fine - middle) / 3;
   EXPECT_NEAR(limit, beam, 0.005 * beam);
@@ -284,13 +287,13 @@ TEST(StaticSolver, RefusesWhatItCannotFactor) {
   factor(kGrid.cell(12, 3)) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(kind_of(factor).find("finite"), std::string::npos);
   factor.setOnes();
-  factor.segment(kGrid.cell(10, 0), kGrid.ny).setZero();  // a gap: the free part floats
+  factor.segment(kGrid.cell(10, 0), kGrid.ny).setZero();  // a gap: the free side is not held
   EXPECT_FALSE(kind_of(factor).empty());
   EXPECT_FALSE(kind_of(VectorXd::Ones(3)).empty());
   factor.setConstant(1e308);
   EXPECT_FALSE(kind_of(factor).empty());
   factor.setOnes();
-  EXPECT_TRUE(kind_of(factor).empty());  // and it works again afterwards
+  EXPECT_TRUE(kind_of(factor).empty());  // the solver is still usable afterwards
 
   MatrixXd loads = MatrixXd::Ones(1, solver.n_unknowns());
   EXPECT_THROW(solver.solve(loads, std::vector<int>{25}), Error);
@@ -299,7 +302,7 @@ TEST(StaticSolver, RefusesWhatItCannotFactor) {
   EXPECT_THROW(StaticSolver(kGrid, kSection, 24), Error);
 }
 
-// Supernodes whose rows are not a range (which a plate numbered column by column does not have).
+// The rows of supernodes are not a range, which does not occur in plates numbered column by column.
 TEST(SupernodalFactor, ScatteredRowsAndLeadingBlocks) {
   const int n = 40;
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
@@ -340,7 +343,8 @@ TEST(SupernodalFactor, ScatteredRowsAndLeadingBlocks) {
   }
 }
 
-// Loads next to the clamp only: what the whole substitution gives, whatever the order of clamps.
+// For loads next to the clamp only, the shortened substitution must equal the whole one in any
+// order of clamps.
 TEST(StaticSolver, LoadsAtTheClampSkipWhatIsZero) {
   const Grid g{0, 0, 0.4, 0.1, 16, 4};
   StaticSolver solver(g, kSection, 1);

@@ -1,5 +1,6 @@
-// Shows equilibria with known answers: the stretch and the root tension of a rotating bar, and the
-// in-plane bending of a clamped strip, where the complete shape set converges faster.
+// Shows that equilibria with known solutions are found: the stretch and the root tension of a
+// rotating bar, and the in-plane bending of a clamped strip, where the complete shape set converges
+// faster.
 #include "fem/solve/statics.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ namespace {
 using testing::RotatingPlate;
 using testing::ShapeSet;
 
-/// Equilibrium of a plate that turns steadily with its hub.
+/// Returns the equilibrium of a plate that rotates steadily with its hub.
 State spinning(const RotatingPlate& p, testing::Scene& scene) {
   State x = scene.model.reference();
   for (int k = 0; k < scene.model.bodies()[0].element->n_vectors(); ++k)
@@ -27,8 +28,8 @@ State spinning(const RotatingPlate& p, testing::Scene& scene) {
   return x;
 }
 
-// A bar without lateral contraction; strains are below 1e-4, which is what the linear closed form
-// ρ ω² L³ / (3 E) neglects.
+// The bar has no lateral contraction; the linear closed form ρ ω² L³ / (3 E) neglects strains,
+// which are below 1e-4.
 TEST(Statics, RotatingBarStretchesByTheClosedForm) {
   RotatingPlate p;
   p.speed = p.tip_mass = 0;
@@ -44,8 +45,8 @@ TEST(Statics, RotatingBarStretchesByTheClosedForm) {
   }
 }
 
-// The hub holds exactly the centrifugal force of what is outside: the sum of the root's reactions
-// against ∫ ρ h ω² r dA + m ω² r_tip of the stretched plate. Round-off only.
+// The sum of the root's reactions must equal the centrifugal force ∫ ρ h ω² r dA + m ω² r_tip of
+// the stretched plate, to round-off.
 TEST(Statics, HubHoldsTheCentrifugalForce) {
   RotatingPlate p;
   p.speed = 0;
@@ -63,7 +64,7 @@ TEST(Statics, HubHoldsTheCentrifugalForce) {
   double moment = p.tip_mass * point_motion(body, x, p.tip()).position.x();
   ShapeTable t;
   for (int e = 0; e < body.element->n_elements(); ++e) {
-    body.element->tabulate(e, 3, Tabulate::position, {}, FactorKind::none, t);
+    body.element->tabulate(e, 3, Tabulate::position, {}, ScaleFactorKind::none, t);
     moment += p.section.density * p.section.thickness *
               t.weight.dot(t.N * testing::rows_of_element(*body.element, q, e).col(0));
   }
@@ -71,7 +72,7 @@ TEST(Statics, HubHoldsTheCentrifugalForce) {
   EXPECT_NEAR(pull, centrifugal, 1e-11 * centrifugal);
 }
 
-/// Deflection of Timoshenko's beam under a unit force at its end.
+/// Returns the deflection of Timoshenko's beam under a unit force at its end.
 double timoshenko(const RotatingPlate& p) {
   const double inertia = p.section.thickness * std::pow(p.width(), 3) / 12,
                e = p.section.youngs_modulus;
@@ -79,7 +80,8 @@ double timoshenko(const RotatingPlate& p) {
          1.2 * p.length * 2 * (1 + p.section.poisson_ratio) / (e * p.section.thickness * p.width());
 }
 
-/// Tip deflection of the strip 0.5 x 0.1 under a small shear force spread evenly over its end.
+/// Returns the tip deflection of the strip 0.5 x 0.1 under a small shear force distributed
+/// uniformly over its end, relative to Timoshenko's beam.
 double strip(ShapeSet shapes, int nx, int ny) {
   RotatingPlate p;
   p.speed = p.omega = p.tip_mass = 0;
@@ -87,7 +89,7 @@ double strip(ShapeSet shapes, int nx, int ny) {
   p.nx = nx;
   p.ny = ny;
   testing::Scene scene = testing::make_scene(p);
-  // Weights of masses at the Gauss points of the end: exactly its uniform traction.
+  // The weights of masses at the Gauss points of the end are exactly its uniform traction.
   Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_membrane(p.section));
@@ -98,7 +100,8 @@ double strip(ShapeSet shapes, int nx, int ny) {
                                       {p.length, -0.05 + 0.1 * (j + gauss(4).points[g]) / ny},
                                       Vec2(0, 1)));
   model.add_body("plate", grid_of(scene.model.bodies()[0]).copy(), p.section, std::move(terms));
-  model.add_joint(make_weld("root", "plate", "root", scene.growths[0].hub.drive(), WeldMode::edge));
+  model.add_joint(
+      make_weld("root", "plate", "root", scene.moving_roots[0].hub.drive(), WeldMode::edge));
   State x = model.reference();
   const VectorXd zero = VectorXd::Zero(x.q.size());
   solve_rotating_equilibrium(model, zero, zero, x);
@@ -106,7 +109,8 @@ double strip(ShapeSet shapes, int nx, int ny) {
   return deflection / (force * timoshenko(p));
 }
 
-/// The mean deflection of the end of the same strip by six-node triangles.
+/// Returns the mean deflection of the end of this strip by six-node triangles, relative to
+/// Timoshenko's beam.
 double strip_of_triangles() {
   const RotatingPlate p;
   const double half = 0.5 * p.width();
@@ -135,10 +139,10 @@ double strip_of_triangles() {
   return u.row(0).dot(force) / timoshenko(p);
 }
 
-// Against six-node triangles. The clamped edge of the continuum suppresses lateral contraction,
-// which takes 0.4 % off the beam's deflection. Displacement elements are too stiff, the finer ones
-// less so. Corners of the clamp hold all back, about to the first order; the complete set has a
-// fourth of the error.
+// The reference are six-node triangles. The clamped edge of the continuum prevents lateral
+// contraction, which reduces the beam's deflection by 0.4 %. Displacement elements are too stiff,
+// finer ones less so. Singularities at the corners of the clamp limit convergence to about first
+// order; the complete set has a fourth of the error.
 TEST(Statics, StripBendsAsByTriangles) {
   const double exact = strip_of_triangles();
   EXPECT_NEAR(exact, 0.996, 5e-4);
@@ -156,7 +160,7 @@ TEST(Statics, StripBendsAsByTriangles) {
 TEST(Statics, SaysWhenThereIsNoEquilibrium) {
   RotatingPlate p;
   p.speed = 0;
-  p.omega = 400;  // the pull of the tip exceeds what the material can hold
+  p.omega = 400;  // no equilibrium exists at this centrifugal force
   testing::Scene scene = testing::make_scene(p);
   EXPECT_THROW(spinning(p, scene), Error);
 }

@@ -1,6 +1,6 @@
-// Shows that the membrane with assumed strains is what it says: strains sampled at the ends and the
-// middle and interpolated by a parabola, ε₁₁ along m, ε₂₂ along n, ε₁₂ both ways, then integrated;
-// and that its force and tangent belong to that energy, in the plane and in space.
+// Shows that the membrane with assumed strains has the energy of strains that are sampled at the
+// ends and the middle and interpolated by a parabola, ε₁₁ along m, ε₂₂ along n, ε₁₂ both ways, and
+// that its force and tangent belong to that energy, in the plane and in space.
 #include <gtest/gtest.h>
 
 #include "fem/terms.h"
@@ -26,15 +26,15 @@ void PrintTo(const Case& c, std::ostream* out) {
 
 class AssumedMembrane : public ::testing::TestWithParam<Case> {
  protected:
-  AncfPlate plate_{GetParam().dim, GetParam().shapes, testing::even_lines(0.1, 0.3, 1),
-                   testing::even_lines(-0.05, 0.02, 1)};
+  AncfPlate plate_{GetParam().dim, GetParam().shapes, testing::uniform_lines(0.1, 0.3, 1),
+                   testing::uniform_lines(-0.05, 0.02, 1)};
   std::unique_ptr<Term> term_ = make_assumed_membrane(kSection);
   LocalRows q_ = testing::rows_of_element(plate_, testing::random_shape(plate_, 0.2, 5), 0);
 
   void SetUp() override { term_->prepare(plate_, {}, true); }
   Local at(const LocalRows& q) const { return {q, 0 * q, 0 * q}; }
 
-  /// Green-Lagrange strains 11, 22, 2 x 12 at local coordinates.
+  /// Returns the Green-Lagrange strains 11, 22, 2 x 12 at local coordinates.
   Vec3 strain(double s, double u) const {
     ShapeTable t;
     plate_.at(0, s, u, Tabulate::gradient, t);

@@ -1,7 +1,7 @@
-// Shows that the elastic terms of the beam are what they say: energy against Gauss points in the
-// straight coordinates with J J_o⁻¹ written out, force and tangent against differences, rigid
-// motions, uniform strains, batches, and that the mean force is a discrete gradient; for straight,
-// curved and crooked references.
+// Shows that the elastic terms of the beam are right: the energy agrees with Gauss points in the
+// straight coordinates with J J_o⁻¹ written out, force and tangent agree with differences, rigid
+// motions, uniform strains and batches are right, and the mean force is a discrete gradient; for
+// straight, curved and crooked references.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -35,8 +35,8 @@ struct Case {
 
 AncfBeam beam_of(const std::string& reference) {
   if (reference == "straight") return {{0, 0.2, 0.45, 0.6}, kHeight};
-  if (reference == "arc")  // 90 degrees, 9 elements: a batch and one more
-    return {even_nodes(0.9, 9), kHeight, arc_reference(0.9, std::numbers::pi / 2, 9)};
+  if (reference == "arc")  // 90 degrees, 9 elements: one full batch and one element more
+    return {uniform_nodes(0.9, 9), kHeight, arc_reference(0.9, std::numbers::pi / 2, 9)};
   return testing::crooked_beam(kHeight);
 }
 
@@ -72,7 +72,7 @@ class BeamTerm : public ::testing::TestWithParam<Case> {
     double sum = 0;
     ShapeTable t;
     for (int e = 0; e < beam.n_elements(); ++e) {
-      beam.tabulate(e, 8, Tabulate::position, {}, FactorKind::none, t);
+      beam.tabulate(e, 8, Tabulate::position, {}, ScaleFactorKind::none, t);
       sum += t.weight.sum();
     }
     return sum;
@@ -94,8 +94,8 @@ INSTANTIATE_TEST_SUITE_P(Beams, BeamTerm, ::testing::ValuesIn([] {
 
 using Matrix2 = Eigen::Matrix2d;
 
-/// Strains of one element from T (A.2), with derivatives by x and y as polynomials: at ξ = s and y,
-/// 2 along X_y and 1 at right angles to it.
+/// Strains of one element from T (A.2), with derivatives by x and y as polynomials at ξ = s and y;
+/// axis 2 is along X_y and axis 1 perpendicular to it.
 struct PlainStrains {
   LocalRows X, q;
   double l;
@@ -118,8 +118,9 @@ struct PlainStrains {
     return (F.transpose() * F - Matrix2::Identity()) / 2;
   }
 
-  /// Strains of the axis: a uniform tensor C fitted to ε₁₁ and ε₁₂ at the ends and in the middle
-  /// and to ε₂₂ at the ends, and polynomials through what C leaves of them (beam_strains.h).
+  /// Returns the strains of the axis: a uniform tensor C is fitted to ε₁₁ and ε₁₂ at the ends and
+  /// in the middle and to ε₂₂ at the ends, and polynomials interpolate the remainders
+  /// (beam_strains.h).
   Matrix2 assumed(double s) const {
     const double at[3] = {0, 0.5, 1};
     Eigen::Matrix<double, 8, 3> by_uniform;  // C₁₁, C₂₂, C₁₂
@@ -127,7 +128,7 @@ struct PlainStrains {
     int row = 0;
     for (int k = 0; k < 3; ++k) {
       const Matrix2 e = strain(at[k], 0), a = axes(at[k]);
-      const auto sample = [&](int i, int j, double scale) {  // scale: 2ε₁₂ is what is fitted
+      const auto sample = [&](int i, int j, double scale) {  // scale: 2 because 2ε₁₂ is fitted
         samples[row] = scale * e(i, j);
         by_uniform.row(row++) << scale * a(0, i) * a(0, j), scale * a(1, i) * a(1, j),
             scale * (a(0, i) * a(1, j) + a(1, i) * a(0, j));
@@ -156,7 +157,7 @@ struct PlainStrains {
   }
 };
 
-/// The strain energy of one element by 16 Gauss points each way.
+/// Returns the strain energy of one element by 16 Gauss points each way.
 double energy_by_points(const Case& which, const LocalRows& X, const LocalRows& q, double l) {
   const double E = kSection.youngs_modulus, nu = kSection.poisson_ratio, G = E / (2 * (1 + nu)),
                c = E / (1 - nu * nu);
@@ -183,7 +184,7 @@ double energy_by_points(const Case& which, const LocalRows& X, const LocalRows& 
   return sum * l * kHeight * kSection.thickness;
 }
 
-// Straight: both rules are exact. Else 7 x 4 points of a rational integrand.
+// For the straight beam both rules are exact; otherwise 7 x 4 points integrate a rational function.
 TEST_P(BeamTerm, EnergyIsThatOfTheStrains) {
   const double tolerance = std::string(GetParam().reference) == "straight" ? 1e-12 : 2e-6;
   const MatrixXd X = beam.reference(), q = random_shape(0.2, 3);
@@ -197,7 +198,7 @@ TEST_P(BeamTerm, EnergyIsThatOfTheStrains) {
   }
 }
 
-// A motion of 10 m has round-off of 10 m x 1e-16 in the positions, 1e-14 of the element size.
+// A motion of 10 m has a round-off of 10 m x 1e-16 in the positions, 1e-14 of the element size.
 TEST_P(BeamTerm, RigidMotionStrainsNothing) {
   Eigen::Matrix2d turn;
   turn << std::cos(2.7), -std::sin(2.7), std::sin(2.7), std::cos(2.7);
@@ -207,7 +208,7 @@ TEST_P(BeamTerm, RigidMotionStrainsNothing) {
   EXPECT_LT(std::abs(energy(q)), 1e-20 * stiffness);
   for (int e = 0; e < beam.n_elements(); ++e) {
     const LocalRows f = force(e, local(e, q));
-    for (int k = 0; k < 6; ++k)  // as forces: those of slopes over their scale
+    for (int k = 0; k < 6; ++k)  // in force units: entries of slopes are divided by their scale
       EXPECT_LT(f.row(k).norm() / beam.scale(beam.vectors(e)[static_cast<size_t>(k)]),
                 1e-11 * stiffness);
   }
@@ -220,8 +221,9 @@ TEST_P(BeamTerm, EnergyDoesNotSeeRotations) {
   EXPECT_NEAR(energy(q * turn.transpose()), energy(q), 1e-12 * energy(q));
 }
 
-// Any linear map of the reference configuration is represented exactly: uniform strain, energy
-// ½ ε·Dε times the volume, D plane stress, in both models and in any axes, because D is isotropic.
+// Any linear map of the reference configuration is represented exactly: the strain is uniform, and
+// the energy is ½ ε·Dε times the volume, D plane stress, in both models and in any axes, because D
+// is isotropic.
 TEST_P(BeamTerm, UniformStrainHasTheExactEnergyAndStress) {
   for (const auto& [f11, f12, f21, f22] :
        {std::array{1.1, 0.0, 0.0, 1.0}, {1.0, 0.15, 0.0, 1.0}, {0.95, 0.1, -0.2, 1.2}}) {
@@ -232,7 +234,7 @@ TEST_P(BeamTerm, UniformStrainHasTheExactEnergyAndStress) {
     const double exact =
         0.5 * strain.dot(kSection.elasticity() * strain) * area() * kSection.thickness;
     EXPECT_NEAR(energy(beam.reference() * F.transpose()), exact, 1e-12 * exact);
-    // Virtual work of δF on the force is P : δF times the volume, P = F S.
+    // The virtual work of the force in δF is P : δF times the volume, P = F S.
     const Vec3 s = kSection.elasticity() * strain;
     Eigen::Matrix2d S;
     S << s[0], s[2], s[2], s[1];
@@ -247,18 +249,18 @@ TEST_P(BeamTerm, UniformStrainHasTheExactEnergyAndStress) {
   }
 }
 
-// Assumed strains leave nothing free but rigid motions: three eigenvalues of the stiffness are
-// zero, the next is that of bending, (h/L)² or so of the largest.
+// With assumed strains only rigid motions have no energy: three eigenvalues of the stiffness are
+// zero, the next one belongs to bending and is about (h/L)² of the largest.
 TEST_P(BeamTerm, NothingButRigidMotionsIsFree) {
   const int n = 2 * beam.n_vectors();
   MatrixXd stiffness = MatrixXd::Zero(n, n);
   for (int e = 0; e < beam.n_elements(); ++e) {
     LocalTangent k = LocalTangent::Zero(12, 12);
     term->add_tangent(e, local(e, beam.reference()), {1, 0, 0}, k);
-    const int first = 6 * e;  // three vectors a node
+    const int first = 6 * e;  // three vectors for each node
     stiffness.block(first, first, 12, 12) += k;
   }
-  for (int k = 0; k < beam.n_vectors(); ++k) {  // as forces by displacements
+  for (int k = 0; k < beam.n_vectors(); ++k) {  // in units of force per displacement
     stiffness.middleRows(2 * k, 2) /= beam.scale(k);
     stiffness.middleCols(2 * k, 2) /= beam.scale(k);
   }
@@ -267,7 +269,8 @@ TEST_P(BeamTerm, NothingButRigidMotionsIsFree) {
   EXPECT_GT(values[3], 1e-6 * values[n - 1]);
 }
 
-// The force is cubic in the unknowns: differences of order 4 are exact but for round-off.
+// The force is cubic in the unknowns; therefore differences of order 4 are exact except for
+// round-off.
 TEST_P(BeamTerm, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
   const int e = beam.n_elements() - 1;
   const Local x = local(e, random_shape(0.2, 1));
@@ -294,26 +297,26 @@ TEST_P(BeamTerm, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
     }
 }
 
-// Eight elements side by side: force and tangent of each as by itself.
+// In batches of eight, force and tangent of each element must equal those of the single element.
 TEST_P(BeamTerm, BatchesAreElements) {
   const MatrixXd all = random_shape(0.2, 2);
   for (int first = 0; first < beam.n_elements(); first += kLanes) {
     const int count = std::min(kLanes, beam.n_elements() - first);
-    std::array<Lanes, 12> q, zero{}, f{};
+    std::array<Pack, 12> q, zero{}, f{};
     for (int lane = 0; lane < kLanes; ++lane) {
       const LocalRows rows = rows_of_element(beam, all, first + std::min(lane, count - 1));
       for (size_t k = 0; k < 12; ++k) q[k][lane] = rows.data()[k];
     }
     const Batch batch{first, count, 6, 2, q.data(), zero.data(), zero.data()};
     term.add_forces(batch, f.data());
-    std::vector<Lanes> tangent(144, Lanes{});
+    std::vector<Pack> tangent(144, Pack{});
     term.add_tangents(batch, {0.7, 3, 5}, tangent.data());
     for (int lane = 0; lane < count; ++lane) {
       const Local x = local(first + lane, all);
       const LocalRows alone = force(first + lane, x);
       LocalTangent k = LocalTangent::Zero(12, 12);
       term->add_tangent(first + lane, x, {0.7, 3, 5}, k);
-      // The order of sums may differ by the compiler's contraction.
+      // Sums may differ by contracted operations.
       for (size_t i = 0; i < 12; ++i)
         EXPECT_NEAR(f[i][lane], alone.data()[i], 1e-13 * alone.cwiseAbs().maxCoeff());
       for (Eigen::Index i = 0; i < 144; ++i)
@@ -323,7 +326,7 @@ TEST_P(BeamTerm, BatchesAreElements) {
   }
 }
 
-// F̄ · (q₁ - q₀) = U₁ - U₀ over a large step; no resultant, no moment about the mean positions.
+// F̄ · (q₁ - q₀) = U₁ - U₀ over a large step, without resultant and moment about mean positions.
 TEST_P(BeamTerm, MeanForceIsADiscreteGradient) {
   const int e = 1;
   LocalStep x;
@@ -341,8 +344,8 @@ TEST_P(BeamTerm, MeanForceIsADiscreteGradient) {
   EXPECT_LT(std::abs(moment), 1e-13 * f.norm() * x.mean.q.norm());
 
   LocalTangent k = LocalTangent::Zero(12, 12);
-  term.with_mean_force().add_mean_tangent(e, x, {0.5, 0, 0},
-                                          k);  // the end moves by one, the mean by a half
+  // The weights: the end moves by one, the mean by a half.
+  term.with_mean_force().add_mean_tangent(e, x, {0.5, 0, 0}, k);
   for (Eigen::Index l = 0; l < 12; ++l) {
     const double step = l / 2 % 3 == 0 ? 1e-3 * beam.scale(1) : 1e-3;
     const MatrixXd df = first_difference(
@@ -360,9 +363,9 @@ TEST_P(BeamTerm, MeanForceIsADiscreteGradient) {
   }
 }
 
-// Pure bending of a straight beam, r = (x, ½κx²) with r_y along the normal, to first order in κ:
-// ε₁₁ = -κy. gcm stores E/(1 - ν²) I κ²/2 per length because r_y cannot shrink and swell over the
-// height, ecm E I κ²/2.
+// Pure bending of a straight beam, r = (x, ½κx²) with r_y along the normal, has to first order in
+// κ: ε₁₁ = -κy. The energy per length is E/(1 - ν²) I κ²/2 for gcm, because r_y cannot contract and
+// expand over the height, and E I κ²/2 for ecm.
 TEST(BeamBending, PoissonLockingIsOneOverOneMinusNuSquared) {
   const double l = 0.5, kappa = 1e-4, inertia = kSection.thickness * std::pow(kHeight, 3) / 12;
   const AncfBeam beam(l, kHeight, 1);
@@ -376,17 +379,18 @@ TEST(BeamBending, PoissonLockingIsOneOverOneMinusNuSquared) {
                                      {"gcm_full", 1 / (1 - 0.3 * 0.3)}}) {
     const BodyTerm term = make_term(name, kSection);
     term->prepare(beam, {}, true);
-    // Terms of fourth order in κ: (κl)²/h² of the strain on the axis is below 1e-4 of it.
+    // Terms of fourth order in κ are negligible: (κl)²/h² of the strain on the axis is below 1e-4
+    // of it.
     EXPECT_NEAR(term->strain_energy(0, x) / exact, factor, 1e-6) << name;
   }
 }
 
 TEST(BeamTerms, BelongToBeamsInThePlane) {
-  const AncfPlate plate(2, testing::ShapeSet::h12, testing::even_lines(0, 1, 2),
-                        testing::even_lines(0, 1, 1));
+  const AncfPlate plate(2, testing::ShapeSet::h12, testing::uniform_lines(0, 1, 2),
+                        testing::uniform_lines(0, 1, 1));
   const std::string text = testing::error_of(
       Error::Kind::input, [&] { make_beam_ecm(kSection)->prepare(plate, {}, true); });
-  EXPECT_TRUE(testing::says(text, "'ecm' is that of a beam")) << text;
+  EXPECT_TRUE(testing::mentions(text, "'ecm'")) << text;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Shows that the bending term is ½ ∫ κᵀ D κ dA with the curvatures of the deformed surface: against
-// known surfaces (cylinder, saddle), against differences, and that rigid motions bend nothing; the
-// membrane in space beside it.
+// Shows that the bending term is ½ ∫ κᵀ D κ dA with the curvatures of the deformed surface, against
+// known surfaces (cylinder, saddle) and differences; that rigid motions have no bending energy; and
+// that the membrane in space has these properties, too.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ class SpaceTerm : public ::testing::TestWithParam<Case> {
   }
 
   AncfPlate plate;
-  Factors factors;
+  ScaleFactors factors;
   BodyTerm term;
 };
 INSTANTIATE_TEST_SUITE_P(
@@ -60,8 +60,8 @@ INSTANTIATE_TEST_SUITE_P(
              (c.param.designed ? "_designed" : "_uniform");
     });
 
-// Steps of 1e-3 of the element: truncation 1e-12 times the growth of fifth derivatives, round-off
-// 1e-16 / 1e-3.
+// With steps of 1e-3 of the element, truncation is 1e-12 times the growth of fifth derivatives, and
+// round-off is 1e-16 / 1e-3.
 TEST_P(SpaceTerm, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
   const int e = 3;
   const Local x = local(e);
@@ -92,8 +92,9 @@ TEST_P(SpaceTerm, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
     }
 }
 
-// Scale: unit strain, and a curvature of one over the plate's width. Moved by 10 m, the positions
-// have round-off 1e-15 m, 2e-14 of an element, and curvatures 1e-12 of 1/width.
+// The scale is the energy of unit strain, or of a curvature of one over the plate's width. After a
+// motion of 10 m the positions have a round-off of 1e-15 m, 2e-14 of an element, and curvatures
+// 1e-12 of 1/width.
 TEST_P(SpaceTerm, RigidMotionStoresNoEnergyAndNeedsNoForce) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.3, Vec3(1, 2, 3).normalized()).matrix();
   MatrixXd q = plate.reference() * turn.transpose();
@@ -120,10 +121,11 @@ TEST_P(SpaceTerm, EnergyDoesNotSeeLargeRotationsAndForceTurnsAlong) {
   EXPECT_LT((force(1, x) - turned).cwiseAbs().maxCoeff(), 1e-11 * turned.cwiseAbs().maxCoeff());
 }
 
-/// Energy of a surface r(m, n) interpolated by h16, the term integrated with n x n points.
+/// Returns the energy of a surface r(m, n) interpolated by h16; the term is integrated with n x n
+/// points.
 double energy_of_surface(const std::function<Vec3(double, double)>& r, int elements, int n_points) {
-  AncfPlate plate(3, ShapeSet::h16, testing::even_lines(0, 1, elements),
-                  testing::even_lines(0, 1, elements));
+  AncfPlate plate(3, ShapeSet::h16, testing::uniform_lines(0, 1, elements),
+                  testing::uniform_lines(0, 1, elements));
   MatrixXd q = plate.reference();
   for (const NodeVectors& node : plate.nodes()) {
     const double m = node.material.x(), n = node.material.y(), h = 1e-3;
@@ -146,9 +148,10 @@ double energy_of_surface(const std::function<Vec3(double, double)>& r, int eleme
   return out;
 }
 
-// Rolled on a cylinder of radius R along a direction at angle a: κ = (cos², sin², 2 sin cos)/R, for
-// any a the energy D/(2 R²). Hermite interpolation errs by (h/R)²/12 in the curvature locally and
-// by its square in the energy: (0.125/0.6)⁴/144 = 1e-5, a few times that with cross derivatives.
+// A plate is rolled on a cylinder of radius R along a direction at angle a: κ = (cos², sin², 2 sin
+// cos)/R; the energy is D/(2 R²) for any a. Hermite interpolation has a local error of (h/R)²/12 in
+// the curvature and of its square in the energy: (0.125/0.6)⁴/144 = 1e-5, a few times more with
+// cross derivatives.
 TEST(Bending, CylinderHasTheEnergyOfItsCurvature) {
   const double d = kSection.elasticity()(0, 0) * std::pow(kSection.thickness, 3) / 12, radius = 0.6;
   for (const double a : {0.0, 0.5, std::numbers::pi / 2}) {
@@ -162,7 +165,8 @@ TEST(Bending, CylinderHasTheEnergyOfItsCurvature) {
   }
 }
 
-// z = t m n with a small t: κ = (0, 0, 2 t), energy ½ D (1-ν)/2 (2t)²; corrections are t².
+// z = t m n with a small t has κ = (0, 0, 2 t) and the energy ½ D (1-ν)/2 (2t)²; corrections are
+// t².
 TEST(Bending, SaddleHasTheEnergyOfItsTwist) {
   const double d = kSection.elasticity()(2, 2) * std::pow(kSection.thickness, 3) / 12, t = 1e-4;
   const double energy =
@@ -170,7 +174,7 @@ TEST(Bending, SaddleHasTheEnergyOfItsTwist) {
   EXPECT_NEAR(energy / (0.5 * d * 4 * t * t), 1, 1e-7);
 }
 
-// The integrand is rational: at a moderate dome of 4 x 4 elements the default rule is converged.
+// The integrand is rational; for a moderate dome of 4 x 4 elements the default rule has converged.
 TEST(Bending, SevenPointsConfirmFive) {
   const auto dome = [](double m, double n) {
     return Vec3(m, n, 0.3 * std::sin(2 * m) * std::cos(n));
@@ -179,15 +183,16 @@ TEST(Bending, SevenPointsConfirmFive) {
   EXPECT_NEAR(five / seven, 1, 1e-6);
 }
 
-// The kernels sum over one direction after the other; here, point by point from the tables of all
-// shape functions: the same points and weights, κ by its definition. Sums of 81 and 256 points.
+// The kernels sum over one direction after the other. The expected energy is summed point by point
+// from the tables of all shape functions, with equal points and weights and κ by its definition.
+// The tolerance is round-off of sums of 81 and 256 points.
 TEST(Bending, EnergyIsThatOfItsPoints) {
   const Eigen::Matrix3d d = std::pow(kSection.thickness, 3) / 12 * kSection.elasticity();
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
     for (const bool designed : {false, true}) {
       const AncfPlate plate(3, shapes, {{0.1, {}}, {0.21, {}}, {0.3, {}}},
                             {{-0.05, {}}, {0.01, {}}, {0.07, {}}});
-      const Factors factors = designed ? testing::random_factors(5) : Factors{};
+      const ScaleFactors factors = designed ? testing::random_factors(5) : ScaleFactors{};
       const BodyTerm term = make_bending(kSection);
       term->prepare(plate, factors, true);
       const MatrixXd shape = testing::random_shape(plate, 0.2, 1);
@@ -195,7 +200,7 @@ TEST(Bending, EnergyIsThatOfItsPoints) {
         Local x;
         x.q = testing::rows_of_element(plate, shape, e);
         ShapeTable t;
-        plate.tabulate(e, 16, Tabulate::curvature, factors, FactorKind::stiffness, t);
+        plate.tabulate(e, 16, Tabulate::curvature, factors, ScaleFactorKind::stiffness, t);
         const MatrixXd q = x.q, r_m = t.N_m * q, r_n = t.N_n * q, r_mm = t.N_mm * q,
                        r_nn = t.N_nn * q, r_mn = t.N_mn * q;
         double expected = 0;
@@ -211,18 +216,18 @@ TEST(Bending, EnergyIsThatOfItsPoints) {
     }
 }
 
-// Eight elements side by side are eight elements one by one, with one table for all (even lines),
-// with their own (a design, moving lines) and in a batch that is not full: 15 elements. Round-off
-// of the same sums in vector registers.
+// Batches of eight elements must give the results of single elements, with one table for all
+// (uniform lines), with separate tables (scale factors, moving lines) and in a batch that is not
+// full: 15 elements. The tolerance is round-off of equal sums in vector registers.
 TEST(Bending, BatchesAreTheirElements) {
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
     for (const bool designed : {false, true})
       for (const bool moves : {false, true}) {
-        std::vector<MaterialLine> lines = testing::even_lines(0.1, 0.45, 5);
+        std::vector<MaterialLine> lines = testing::uniform_lines(0.1, 0.45, 5);
         if (moves) lines[0] = testing::swinging_line(0.1, 0.03, 2.1);
-        AncfPlate plate(3, shapes, lines, testing::even_lines(-0.05, 0.07, 3));
+        AncfPlate plate(3, shapes, lines, testing::uniform_lines(-0.05, 0.07, 3));
         const BodyTerm term = make_bending(kSection);
-        const Factors factors = designed ? testing::random_factors(3) : Factors{};
+        const ScaleFactors factors = designed ? testing::random_factors(3) : ScaleFactors{};
         term->prepare(plate, factors, true);
         plate.move_to(0.37);
         term->prepare(plate, factors, false);
@@ -231,7 +236,7 @@ TEST(Bending, BatchesAreTheirElements) {
         const Weights w{0.7, 3, 20};
         for (int first = 0; first < n_elements; first += kLanes) {
           const auto size = static_cast<size_t>(n);
-          std::vector<Lanes> q(size), f(size), t(size * size);
+          std::vector<Pack> q(size), f(size), t(size * size);
           const int count = std::min(kLanes, n_elements - first);
           for (int lane = 0; lane < kLanes; ++lane) {
             const LocalRows rows =
@@ -267,19 +272,19 @@ TEST(Bending, NeedsSpace) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(make_term("bending", kSection));
   model.add_body("arm",
-                 std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::even_lines(0, 1, 1),
-                                             testing::even_lines(0, 1, 1)),
+                 std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::uniform_lines(0, 1, 1),
+                                             testing::uniform_lines(0, 1, 1)),
                  kSection, std::move(terms));
   try {
     model.prepare(0);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_STREQ(error.what(), "body 'arm': term 'bending' needs a body in space");
+    EXPECT_STREQ(error.what(), "body 'arm': term 'bending' needs a three-dimensional body");
   }
 }
 
-// Second derivatives of the shape functions against differences of the first ones.
+// Second derivatives of the shape functions must equal differences of the first derivatives.
 TEST(Bending, SecondDerivativesAreDerivativesOfTheFirst) {
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16}) {
     const AncfPlate plate = testing::swinging_plate(shapes, 0.4);
@@ -296,7 +301,8 @@ TEST(Bending, SecondDerivativesAreDerivativesOfTheFirst) {
       const auto along_m = [&](double d) { return MatrixXd(table(0.3 + d / a, 0.6).N_m); };
       const auto along_n = [&](double d) { return MatrixXd(table(0.3, 0.6 + d / b).N_n); };
       const auto mixed = [&](double d) { return MatrixXd(table(0.3, 0.6 + d / b).N_m); };
-      // Cubic: the differences are exact but for round-off 1e-16 / 1e-2 of values up to 1/a.
+      // The functions are cubic: the differences are exact except for round-off 1e-16 / 1e-2 of
+      // values up to 1/a.
       EXPECT_LT((t.N_mm - first_difference(along_m, 1e-2)).norm(), 1e-12 * t.N_mm.norm());
       EXPECT_LT((t.N_nn - first_difference(along_n, 1e-2)).norm(), 1e-12 * t.N_nn.norm());
       EXPECT_LT((t.N_mn - first_difference(mixed, 1e-2)).norm(), 1e-12 * t.N_mn.norm());

@@ -1,8 +1,8 @@
-// Shows that material damping is what it says, on plates in the plane and in space and on beams:
-// its power against second differences of the elastic energy and against strain rates point by
-// point, its force as half the derivative of its power, its tangents against differences; that
-// rigid motions dissipate nothing; that its mean force dissipates exactly what the balance counts
-// and keeps the momenta; and that material flow through it keeps the balance.
+// Shows for plates in the plane and in space and for beams that material damping is right: its
+// power agrees with second differences of the elastic energy and with strain rates at points, its
+// force is half the derivative of its power, its tangents agree with differences. Shows also that
+// rigid motions dissipate nothing, that the mean force dissipates the energy of the balance and
+// keeps the momenta, and that the balance holds with material flow.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -27,31 +27,31 @@ using testing::second_difference;
 using testing::ShapeSet;
 
 const PlaneSection kSection{0.03, 1e8, 0.3, 2700};
-constexpr double kTime = 2e-3;  // τ
+constexpr double kTime = 2e-3;  // damping time τ [s]
 
 struct Case {
   std::vector<std::string> elastic;
-  TermPlace place;
+  TermDomain domain;
   bool designed = false;
 };
 void PrintTo(const Case& c, std::ostream* out) {
   for (const std::string& name : c.elastic) *out << name << ' ';
-  *out << (c.place == TermPlace::plane   ? "plane"
-           : c.place == TermPlace::space ? "space"
-                                         : "beam")
+  *out << (c.domain == TermDomain::plane   ? "plane"
+           : c.domain == TermDomain::space ? "space"
+                                           : "beam")
        << (c.designed ? " designed" : "");
 }
 
 class Damping : public ::testing::TestWithParam<Case> {
  protected:
   Damping() {
-    const TermPlace place = GetParam().place;
-    if (place == TermPlace::beam)
-      element = std::make_unique<AncfBeam>(even_nodes(0.6, 3), 0.1,
+    const TermDomain domain = GetParam().domain;
+    if (domain == TermDomain::beam)
+      element = std::make_unique<AncfBeam>(uniform_nodes(0.6, 3), 0.1,
                                            arc_reference(0.6, std::numbers::pi / 3, 3));
     else
       element =
-          std::make_unique<AncfPlate>(place == TermPlace::plane ? 2 : 3, ShapeSet::h16,
+          std::make_unique<AncfPlate>(domain == TermDomain::plane ? 2 : 3, ShapeSet::h16,
                                       std::vector<MaterialLine>{{0.1, {}}, {0.21, {}}, {0.3, {}}},
                                       std::vector<MaterialLine>{{-0.05, {}}, {0.02, {}}});
     if (GetParam().designed) factors = testing::random_factors(11);
@@ -76,12 +76,12 @@ class Damping : public ::testing::TestWithParam<Case> {
   MatrixXd strained(unsigned seed = 3) const {
     return element->reference() + random_rows(0.1, seed);
   }
-  /// A rotation by an angle about an axis that is not one of the coordinates'.
+  /// Returns a rotation by an angle about an axis that is not a coordinate axis.
   MatrixXd rotation(double angle) const {
     if (element->dim() == 2) return Eigen::Rotation2Dd(angle).toRotationMatrix();
     return Eigen::AngleAxisd(angle, Vec3(1, 2, -1.5).normalized()).toRotationMatrix();
   }
-  MatrixXd spin() const {  // of a rotation at rate 1
+  MatrixXd spin() const {  // derivative of a rotation at rate 1
     return first_difference([&](double h) { return rotation(h); }, 1e-3);
   }
   Local local(int e, const MatrixXd& q, const MatrixXd& v) const {
@@ -108,21 +108,21 @@ class Damping : public ::testing::TestWithParam<Case> {
   }
 
   std::unique_ptr<Element> element;
-  Factors factors;
+  ScaleFactors factors;
   std::vector<BodyTerm> all;
 };
 INSTANTIATE_TEST_SUITE_P(Bodies, Damping,
-                         ::testing::Values(Case{{"membrane"}, TermPlace::plane},
-                                           Case{{"membrane"}, TermPlace::plane, true},
-                                           Case{{"membrane", "bending"}, TermPlace::space},
-                                           Case{{"membrane", "bending"}, TermPlace::space, true},
-                                           Case{{"membrane_assumed", "bending"}, TermPlace::space},
-                                           Case{{"gcm"}, TermPlace::beam},
-                                           Case{{"ecm"}, TermPlace::beam},
-                                           Case{{"ecm_full"}, TermPlace::beam}));
+                         ::testing::Values(Case{{"membrane"}, TermDomain::plane},
+                                           Case{{"membrane"}, TermDomain::plane, true},
+                                           Case{{"membrane", "bending"}, TermDomain::space},
+                                           Case{{"membrane", "bending"}, TermDomain::space, true},
+                                           Case{{"membrane_assumed", "bending"}, TermDomain::space},
+                                           Case{{"gcm"}, TermDomain::beam},
+                                           Case{{"ecm"}, TermDomain::beam},
+                                           Case{{"ecm_full"}, TermDomain::beam}));
 
-// Where nothing is strained, U(q + h v) = ½ h² ∫ ė·D ė dA + O(h³): its second derivative is P/τ,
-// factors of a design included.
+// In the unstrained state, U(q + h v) = ½ h² ∫ ė·D ė dA + O(h³): its second derivative is P/τ, also
+// with scale factors.
 TEST_P(Damping, PowerIsTheStiffnessOfTheStrainRates) {
   const MatrixXd turn = rotation(0.7), v = random_rows(1, 5),
                  q = element->reference() * (element->reference().cols() == turn.rows()
@@ -132,7 +132,7 @@ TEST_P(Damping, PowerIsTheStiffnessOfTheStrainRates) {
   EXPECT_NEAR(power(q, v), kTime * by, 1e-8 * kTime * by);
 }
 
-// P = v·C(q) v: the force is half its derivative, and takes it out of the motion.
+// P = v·C(q) v: the force is half its derivative by v, and its power on v is P.
 TEST_P(Damping, ForceIsHalfTheDerivativeOfThePower) {
   const MatrixXd q = strained(), v = random_rows(3, 5);
   for (int e = 0; e < element->n_elements(); ++e) {
@@ -153,14 +153,14 @@ TEST_P(Damping, ForceIsHalfTheDerivativeOfThePower) {
   }
 }
 
-// Without closed form: strain rates by central differences of the strain, which are exact for
-// strains of Green and Lagrange, at 7 x 7 points of every piece.
+// The expected power uses no closed form: strain rates are central differences of the strain, which
+// are exact for Green-Lagrange strains, at 7 x 7 points of every rectangle.
 TEST(DampingOfAMembrane, PowerIsThatOfStrainRatesAtPoints) {
   const AncfPlate plate = testing::swinging_plate(ShapeSet::h16);
-  const Factors factors = testing::random_factors(11);
+  const ScaleFactors factors = testing::random_factors(11);
   const auto terms = make_terms(std::vector<std::string>{"membrane", "damping"}, kSection,
                                 {{"damping_time", kTime}});
-  // The lines of this plate move: at rest for the moment.
+  // The lines of this plate move; the test uses their positions at one time.
   const auto still = plate.copy();
   still->move_to(0.4);
   const std::unique_ptr<Element> element = still->frozen();
@@ -173,7 +173,8 @@ TEST(DampingOfAMembrane, PowerIsThatOfStrainRatesAtPoints) {
     x.v = testing::rows_of_element(frozen, v, e);
     x.a = 0 * x.q;
     const double expected = testing::integrate(
-        frozen, e, factors, FactorKind::stiffness, Tabulate::gradient, [&](const ShapeTable& t) {
+        frozen, e, factors, ScaleFactorKind::stiffness, Tabulate::gradient,
+        [&](const ShapeTable& t) {
           const auto strain = [&](double h) {
             const LocalRows at = x.q + h * x.v;
             const Eigen::RowVector2d r_m = t.N_m * at, r_n = t.N_n * at;
@@ -186,8 +187,8 @@ TEST(DampingOfAMembrane, PowerIsThatOfStrainRatesAtPoints) {
   }
 }
 
-// Differences of order 4 are exact but for round-off where strains are quadratic; the curvature is
-// not.
+// Differences of order 4 are exact except for round-off where strains are quadratic; the curvature
+// is not.
 TEST_P(Damping, TangentsAreDerivatives) {
   const MatrixXd q = strained(), v = random_rows(3, 5);
   const int e = element->n_elements() - 1;
@@ -210,7 +211,8 @@ TEST_P(Damping, TangentsAreDerivatives) {
   }
 }
 
-// Of the power of a motion as fast that is not rigid.
+// The limits are relative to the power and the force of a motion of similar speed that is not
+// rigid.
 TEST_P(Damping, RigidMotionDissipatesNothing) {
   const MatrixXd q = strained(), turned = q * rotation(0.7).transpose();
   MatrixXd v = turned * spin().transpose();
@@ -223,8 +225,8 @@ TEST_P(Damping, RigidMotionDissipatesNothing) {
   EXPECT_LT(f.norm(), 1e-11 * scale.norm());
 }
 
-// What the step takes out is h P of its mean state, momenta stay; and a step that turns the body as
-// a rigid one, by however much, takes nothing.
+// The work of the mean force is h P of the mean state, and the momenta do not change. A step that
+// rotates the body rigidly by any angle dissipates nothing.
 TEST_P(Damping, MeanForceDissipatesWhatTheBalanceCounts) {
   constexpr double h = 0.01;
   const MatrixXd q0 = strained(3), q1 = strained(8);
@@ -268,14 +270,14 @@ TEST_P(Damping, MeanForceDissipatesWhatTheBalanceCounts) {
   }
 }
 
-// Rates of the strains of the material, not of those at a node: lines at the root and inside move.
+// The rates are those of material points, not of nodes: lines at the root and inside move.
 TEST(DampingWithFlow, ChangesTheEnergyByThePowers) {
   using Names = std::vector<std::string>;
   for (const Names& names :
        {Names{"inertia", "membrane", "bending", "damping"}, Names{"membrane_assumed", "damping"}})
     for (const bool designed : {false, true}) {
       Workspace model;
-      const double points = designed ? 8 : 15;  // the rational energy of bending by quadrature
+      const double points = designed ? 8 : 15;  // for the quadrature of the rational bending energy
       Body& body = model.add_body(
           "plate",
           std::make_unique<AncfPlate>(
@@ -283,7 +285,7 @@ TEST(DampingWithFlow, ChangesTheEnergyByThePowers) {
               std::vector<MaterialLine>{testing::swinging_line(0.1, 0.02, 1.3),
                                         testing::swinging_line(0.21, 0.02, 1.7),
                                         {0.3, {}}},
-              testing::even_lines(-0.05, 0.07, 2)),
+              testing::uniform_lines(-0.05, 0.07, 2)),
           kSection,
           make_terms(names, kSection, {{"damping_time", 0.3}, {"bending_points", points}}));
       if (designed) model.set_factors(body, testing::random_factors(5));
@@ -296,16 +298,15 @@ TEST(DampingWithFlow, ChangesTheEnergyByThePowers) {
     }
 }
 
-// A body that turns with its frame keeps its strains: what it starts with under its centrifugal
-// forces is what it would start with undamped, in whatever way it is carried; its rate is that of
-// differences over 1e-4 s.
+// A body that rotates with its frame keeps its strains; therefore it must start in the undamped
+// state under its centrifugal forces. Its rates are differences over 1e-4 s.
 TEST(DampingAtTheStart, LeavesWhatIsCarriedAsItIs) {
-  constexpr double kSpin = 6, kDampingTime = 0.05;  // ωτ = 0.3 would show
+  constexpr double kSpin = 6, kDampingTime = 0.05;  // a wrong rate would be visible at ωτ = 0.3
   testing::RotatingPlate plate;
   plate.speed = 0;
   plate.omega = kSpin;
   plate.nx = 4;
-  const Placement nothing_else = [](double) { return std::vector<Placed>{}; };
+  const BodyPoses nothing_else = [](double) { return std::vector<BodyPose>{}; };
   const auto start = [&](bool damped, double* power) {
     testing::Scene scene = testing::make_scene(plate);
     if (damped)
@@ -313,7 +314,8 @@ TEST(DampingAtTheStart, LeavesWhatIsCarriedAsItIs) {
           std::move(make_terms(std::vector<std::string>{"membrane", "damping"}, plate.section,
                                {{"damping_time", kDampingTime}})
                         .back()));
-    const State x = start_state(scene.model, scene.growths, 0, Start::prestretched, nothing_else);
+    const State x =
+        start_state(scene.model, scene.moving_roots, 0, Start::prestretched, nothing_else);
     if (power) *power = scene.model.dissipation(x) / scene.model.energies(x).strain;
     return x;
   };
@@ -321,28 +323,28 @@ TEST(DampingAtTheStart, LeavesWhatIsCarriedAsItIs) {
   const State free = start(false, nullptr), damped = start(true, &power);
   testing::RotatingPlate rigid = plate;
   testing::Scene scene = testing::make_scene(rigid);
-  const State unstrained = start_state(scene.model, scene.growths, 0, Start::rigid);
+  const State unstrained = start_state(scene.model, scene.moving_roots, 0, Start::rigid);
   EXPECT_LT((damped.q - free.q).norm(), 1e-8 * (free.q - unstrained.q).norm());
   EXPECT_LT((damped.v - free.v).norm(), 1e-5 * (free.v - unstrained.v).norm());
-  EXPECT_LT(power, 1e-6 * 2 * kDampingTime * kSpin * kSpin);  // P/U of strains that turn
+  EXPECT_LT(power, 1e-6 * 2 * kDampingTime * kSpin * kSpin);  // P/U of strains that rotate
 }
 
 TEST(DampingTerm, SaysWhatItCannotDo) {
   using Names = std::vector<std::string>;
   const auto error = [](const auto& f) { return testing::error_of(Error::Kind::input, f); };
   EXPECT_TRUE(
-      testing::says(error([] {
-                      make_terms(Names{"inertia", "damping"}, kSection, {{"damping_time", 1}});
-                    }),
-                    "elastic terms"));
-  EXPECT_TRUE(testing::says(error([] {
-                              make_terms(Names{"membrane", "damping"}, kSection, {});
-                            }),
-                            "damping_time"));
+      testing::mentions(error([] {
+                          make_terms(Names{"inertia", "damping"}, kSection, {{"damping_time", 1}});
+                        }),
+                        "elastic terms"));
+  EXPECT_TRUE(testing::mentions(error([] {
+                                  make_terms(Names{"membrane", "damping"}, kSection, {});
+                                }),
+                                "damping_time"));
   const auto terms = make_terms(Names{"membrane", "damping"}, kSection, {{"damping_time", kTime}});
   const AncfPlate free(2, ShapeSet::h16, {{0.1, {}, true}, {0.2, {}}}, {{0, {}}, {0.1, {}}});
-  EXPECT_TRUE(testing::says(error([&] { terms[1]->prepare(free, {}, true); }),
-                            "'damping' does not know free material lines"));
+  EXPECT_TRUE(testing::mentions(error([&] { terms[1]->prepare(free, {}, true); }),
+                                "'damping' does not support free material lines"));
 }
 
 }  // namespace

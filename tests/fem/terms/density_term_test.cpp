@@ -1,7 +1,8 @@
-// Shows that terms are their densities: for every elastic row of the table of terms, in the plane,
-// in space and on beams, with uniform and designed material, with lines that stand, move and are
-// free, the closed forms that run have the forces, tangents, energies and powers of the term that
-// is made from nothing but the density. And that densities by strains are their own derivatives.
+// Shows that terms equal their densities: for every elastic row of the table of terms, in the
+// plane, in space and on beams, with uniform material and scale factors, with fixed, moving and
+// free lines, the closed forms in use have the forces, tangents, energies and powers of the term
+// that is made from the density alone. Shows also that the derivatives of strain densities are
+// right.
 #include "fem/terms/density_term.h"
 
 #include <gtest/gtest.h>
@@ -28,31 +29,31 @@ const PlaneSection kSection{0.03, 1e8, 0.3, 2700};
 
 struct Case {
   std::string row;
-  TermPlace place;
+  TermDomain domain;
   ShapeSet shapes = ShapeSet::h16;
   bool designed = false;
   std::string beam = "";
 };
 void PrintTo(const Case& c, std::ostream* out) {
   *out << c.row << ' ' << c.beam;
-  if (c.place != TermPlace::beam)
-    *out << (c.place == TermPlace::plane ? "plane" : "space")
+  if (c.domain != TermDomain::beam)
+    *out << (c.domain == TermDomain::plane ? "plane" : "space")
          << (c.shapes == ShapeSet::h12 ? " h12" : " h16") << (c.designed ? " designed" : "");
 }
 
-/// Every elastic row, wherever it may stand.
+/// Returns every elastic row with every domain that it supports.
 std::vector<Case> cases() {
   std::vector<Case> out;
   for (const TermRow* row : term_rows()) {
     if (!row->elastic) continue;
-    for (const TermPlace place : row->places) {
-      if (place == TermPlace::beam)
+    for (const TermDomain domain : row->domains) {
+      if (domain == TermDomain::beam)
         for (const char* beam : {"straight", "arc", "crooked"})
-          out.push_back({row->name, place, {}, false, beam});
+          out.push_back({row->name, domain, {}, false, beam});
       else
         for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
           for (const bool designed : {false, true})
-            out.push_back({row->name, place, shapes, designed});
+            out.push_back({row->name, domain, shapes, designed});
     }
   }
   return out;
@@ -61,20 +62,20 @@ std::vector<Case> cases() {
 std::unique_ptr<Element> element_of(const Case& c, bool still) {
   if (c.beam == "straight") return std::make_unique<AncfBeam>(0.6, 0.1, 3);
   if (c.beam == "arc")
-    return std::make_unique<AncfBeam>(even_nodes(0.6, 3), 0.1,
+    return std::make_unique<AncfBeam>(uniform_nodes(0.6, 3), 0.1,
                                       arc_reference(0.6, std::numbers::pi / 3, 3));
   if (c.beam == "crooked") return std::make_unique<AncfBeam>(testing::crooked_beam(0.1));
   using testing::swinging_line;
-  const auto line = [&](double at, double amplitude, double pulsation) {
-    return still ? MaterialLine{at, {}} : swinging_line(at, amplitude, pulsation);
+  const auto line = [&](double at, double amplitude, double angular_frequency) {
+    return still ? MaterialLine{at, {}} : swinging_line(at, amplitude, angular_frequency);
   };
   return std::make_unique<AncfPlate>(
-      c.place == TermPlace::plane ? 2 : 3, c.shapes,
+      c.domain == TermDomain::plane ? 2 : 3, c.shapes,
       std::vector<MaterialLine>{line(0.1, 0.03, 2.1), {0.21, {}}, line(0.3, 0.02, 1.3), {0.45, {}}},
       std::vector<MaterialLine>{{-0.05, {}}, line(0.01, 0.02, 1.7), {0.07, {}}}, 0.4);
 }
 
-/// All unknowns of a body at random, a part of the element size away from the reference.
+/// Returns random unknowns of a body, within a fraction of the element size from the reference.
 MatrixXd shape(const Element& element, double size, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> part(-size, size);
@@ -85,7 +86,8 @@ MatrixXd shape(const Element& element, double size, unsigned seed) {
   return out;
 }
 
-/// The densities of a row by nothing but their strains and their stiffness: no closed form.
+/// Returns the densities of a row from their strains and their stiffness only, without closed
+/// forms.
 std::vector<ElasticPart> plain_parts(const TermRow& row) {
   std::vector<ElasticPart> out = row.elastic({kSection, {}, {}});
   for (ElasticPart& part : out) {
@@ -95,7 +97,7 @@ std::vector<ElasticPart> plain_parts(const TermRow& row) {
   return out;
 }
 
-/// Largest entry of a difference by the largest entry of what it should be.
+/// Returns the largest entry of the difference relative to the largest expected entry.
 template <class Matrix>
 double relative(const Matrix& is, const Matrix& should) {
   return (is - should).template lpNorm<Eigen::Infinity>() /
@@ -131,7 +133,7 @@ class EveryElasticRow : public ::testing::TestWithParam<Case> {
   }
 
   std::unique_ptr<Element> element;
-  Factors factors;
+  ScaleFactors factors;
   BodyTerm closed;
   BodyTerm generic;
   MatrixXd q;
@@ -175,7 +177,7 @@ TEST_P(EveryElasticRow, HasThePowersOfItsDensity) {
   }
 }
 
-// U₁ - U₀ = F̄ · d, to the round-off of the energies.
+// U₁ - U₀ = F̄ · d must hold to the round-off of the energies.
 TEST_P(EveryElasticRow, HasAMeanForceThatKeepsTheEnergy) {
   build(true);
   const MatrixXd end = shape(*element, 0.1, 8);
@@ -191,10 +193,10 @@ TEST_P(EveryElasticRow, HasAMeanForceThatKeepsTheEnergy) {
 }
 
 TEST_P(EveryElasticRow, HasTheForcesOnFreeLinesOfItsDensity) {
-  if (!term_row(GetParam().row).free_lines || GetParam().place == TermPlace::beam ||
+  if (!term_row(GetParam().row).eulerian_lines || GetParam().domain == TermDomain::beam ||
       GetParam().designed)
     return;
-  const int dim = GetParam().place == TermPlace::plane ? 2 : 3;
+  const int dim = GetParam().domain == TermDomain::plane ? 2 : 3;
   const auto free = [](std::initializer_list<double> at) {
     std::vector<MaterialLine> out;
     for (const double x : at) out.push_back({x, {}, true});
@@ -207,15 +209,15 @@ TEST_P(EveryElasticRow, HasTheForcesOnFreeLinesOfItsDensity) {
   x.q = testing::rows_of_element(plate, shape(plate, 0.1, 3), 0);
   x.v = x.a = LocalRows::Zero(x.q.rows(), x.q.cols());
   const Eigen::Index n = x.q.size() + kSides;
-  FreeForce forces[2];
-  FreeTangent tangents[2];
+  EulerianForce forces[2];
+  EulerianTangent tangents[2];
   int i = 0;
   for (const BodyTerm* term : {&closed, &generic}) {
     (*term)->prepare(plate, {}, true);
     forces[i].setZero(n);
     tangents[i].setZero(n, n);
-    term->with_free_lines().add_free_force(0, x, forces[i]);
-    term->with_free_lines().add_free_tangent(0, x, {1, 0, 0}, tangents[i]);
+    term->with_eulerian_lines().add_eulerian_force(0, x, forces[i]);
+    term->with_eulerian_lines().add_eulerian_tangent(0, x, {1, 0, 0}, tangents[i]);
     ++i;
   }
   EXPECT_LT(relative(forces[1], forces[0]), 1e-12);
@@ -223,7 +225,8 @@ TEST_P(EveryElasticRow, HasTheForcesOnFreeLinesOfItsDensity) {
   EXPECT_NEAR(generic->strain_energy(0, x) / closed->strain_energy(0, x), 1, 1e-12);
 }
 
-// Strains are smooth in their measures: differences of fourth order leave (1e-3)⁴ at most.
+// Strains are smooth functions of their measures: differences of fourth order have errors of
+// (1e-3)⁴ at most.
 TEST(StrainMeasures, VariationsAreDerivatives) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> part(-0.3, 0.3);
@@ -263,7 +266,7 @@ TEST(StrainMeasures, VariationsAreDerivatives) {
   }
 }
 
-/// W = Σ (cosh e_i - 1): a density that is not quadratic.
+/// The density W = k Σ (cosh e_i - 1), which is not quadratic.
 class Cosh final : public StrainDensity {
  public:
   Cosh() : StrainDensity(green_lagrange()) {}
@@ -276,7 +279,7 @@ class Cosh final : public StrainDensity {
   static constexpr double kScale = 1e6;
 };
 
-// A density is all that a new term brings: its force and tangent are derivatives of its energy.
+// A density is sufficient for a new term: its force and tangent are derivatives of its energy.
 TEST(ElasticTerm, IsMadeFromAnyDensity) {
   const AncfPlate plate = testing::swinging_plate(ShapeSet::h16, 0.4);
   const BodyTerm term(make_elastic_term(

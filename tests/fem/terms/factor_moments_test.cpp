@@ -1,5 +1,5 @@
-// Shows that weights made of moments of a design's factors, column by column of cells, integrate
-// polynomials as sums over all cells do, cut ones included.
+// Shows that weights from moments of the scale factors, computed column by column of cells,
+// integrate polynomials like sums over all cells, including cut cells.
 #include "fem/terms/factor_moments.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPoints = 13;
 
-/// ∫ s^p ds over [lower, upper] in [0, 1].
+/// Returns ∫ s^p ds over [lower, upper] in [0, 1].
 double power(int p, double lower, double upper) {
   return (std::pow(upper, p + 1) - std::pow(lower, p + 1)) / (p + 1);
 }
@@ -24,7 +24,8 @@ struct Interval {
   double length() const { return end - start; }
 };
 
-/// Σ κ ∫ s^p u^q dA over the cells of a grid, s and u in [0, 1] along and across an element.
+/// Returns Σ κ ∫ s^p u^q dA over the cells of a grid, with s and u in [0, 1] along and across an
+/// element.
 double over_cells(const Grid& grid, const VectorXd& factor, const Interval& m, const Interval& n,
                   int p, int q) {
   double out = 0;
@@ -36,17 +37,19 @@ double over_cells(const Grid& grid, const VectorXd& factor, const Interval& m, c
   return m.length() * n.length() * out;
 }
 
-TEST(FactorMoments, IntegratePolynomialsAsTheCellsDo) {
+TEST(ScaleFactorMoments, IntegratePolynomialsAsTheCellsDo) {
   const Grid grid{0.2, -0.05, 0.6, 0.1, 60, 10};
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(0, 1);
   const VectorXd factor = VectorXd::NullaryExpr(grid.n_cells(), [&] { return any(random); });
-  const std::vector<double> across = {-0.05, -0.013, 0.02, 0.05};  // on cells and through them
-  FactorMoments moments;
+  // on lines of cells and inside cells
+  const std::vector<double> across = {-0.05, -0.013, 0.02, 0.05};
+  ScaleFactorMoments moments;
   moments.prepare(across, grid, factor, kPoints);
   const GaussRule& rule = gauss(kPoints);
   MatrixXd w;
-  // Over many cells, over the middle of two, within one, from line to line of the cells.
+  // Intervals over many cells, over parts of two cells, within one cell, and between lines of
+  // cells.
   for (const Interval m :
        {Interval{0.2, 0.8}, {0.2034, 0.4127}, {0.399, 0.405}, {0.4001, 0.4009}, {0.31, 0.39}})
     for (int j = 0; j < 3; ++j) {

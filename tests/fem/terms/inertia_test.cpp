@@ -1,6 +1,7 @@
-// Shows that inertia with material flow is the mass times the material acceleration: total mass and
-// momentum, force, energy and power against twice-differenced trajectories of material points while
-// the lines of the mesh accelerate through the material; likewise point mass and weight.
+// Shows that inertia with material flow is the mass times the material acceleration: total mass,
+// momentum, force, energy and power agree with second differences of trajectories of material
+// points while the lines of the mesh accelerate through the material. Shows also point mass and
+// weight.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,8 +24,8 @@ using testing::VectorRows;
 
 const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 constexpr double kTime = 0.41;
-// Differences with this step: truncation (step x 3 rad/s)^4 and round-off 1e-16 / step^2 are near
-// 1e-10 of the accelerations.
+// With this step, truncation (step x 3 rad/s)^4 and round-off 1e-16 / step^2 are near 1e-10 of the
+// accelerations.
 constexpr double kStep = 1e-3;
 
 VectorRows as_rows(const VectorXd& q) {
@@ -53,8 +54,9 @@ class Flow : public ::testing::TestWithParam<ShapeSet> {
             testing::rows_of_element(plate, as_rows(x.v), e),
             testing::rows_of_element(plate, as_rows(x.a), e)};
   }
-  /// Position of a material point at another time, by the field of element e: mesh of that time,
-  /// unknowns of another. Points near an edge leave the element meanwhile; its polynomials go on.
+  /// Returns the position of a material point by the field of element e, with the mesh and the
+  /// unknowns of given times. Points near an edge leave the element meanwhile; its polynomials are
+  /// continued.
   Vec2 position(int e, const Vec2& material, double mesh, double unknowns) {
     moved.move_to(mesh);
     const Motion m1 = moved.line_m(e / moved.n_n()), m2 = moved.line_m(e / moved.n_n() + 1);
@@ -71,13 +73,13 @@ class Flow : public ::testing::TestWithParam<ShapeSet> {
     return second_difference([&](double dt) { return position(e, x, kTime + dt, kTime + dt); },
                              kStep);
   }
-  /// Velocity of the flow through standing unknowns.
+  /// Returns the velocity of the flow with constant unknowns.
   Vec2 feed(int e, const Vec2& x) {
     return first_difference([&](double dt) { return position(e, x, kTime + dt, kTime); }, kStep);
   }
   double mass_integral(int e, const std::function<double(const ShapeTable&)>& f) const {
     return kSection.density * kSection.thickness *
-           testing::integrate(plate, e, factors, FactorKind::mass, Tabulate::position, f);
+           testing::integrate(plate, e, factors, ScaleFactorKind::mass, Tabulate::position, f);
   }
   LocalRows force(const Term& term, int e, const Local& x) const {
     LocalRows f = LocalRows::Zero(x.q.rows(), 2);
@@ -87,7 +89,7 @@ class Flow : public ::testing::TestWithParam<ShapeSet> {
   void check_tangent(const Term& term, int e);
 
   AncfPlate plate = swinging_plate(GetParam()), moved = plate;
-  Factors factors = testing::random_factors(11);
+  ScaleFactors factors = testing::random_factors(11);
   SmoothMotion motion{flat(plate.reference()), scales(plate), 4};
   ShapeTable near;
   BodyTerm inertia = make_inertia(kSection);
@@ -101,7 +103,8 @@ TEST_P(Flow, InertiaForceIsMassTimesAccelerationOfMaterialPoints) {
     const Local x = local(e);
     const LocalRows f = force(*inertia, e, x);
     const double largest = f.cwiseAbs().maxCoeff();
-    // One position, one slope and the last function: the loop over points is slow.
+    // Only one position, one slope and the last function are compared, because the loop over points
+    // is slow.
     for (const Eigen::Index k : {Eigen::Index(0), Eigen::Index(1), f.rows() - 1})
       for (Eigen::Index c = 0; c < 2; ++c) {
         const double expected = mass_integral(
@@ -140,7 +143,8 @@ void Flow::check_tangent(const Term& term, int e) {
   const auto n = x.q.size();
   LocalTangent tangent = LocalTangent::Zero(n, n);
   term.add_tangent(e, x, w, tangent);
-  // Along one unknown, q, v and a move by their weights. The force is linear: exact.
+  // q, v and a move by their weights along one unknown. The force is linear; therefore the
+  // difference is exact.
   for (Eigen::Index column = 0; column < n; ++column) {
     const MatrixXd df = first_difference(
         [&](double by) {
@@ -202,7 +206,8 @@ TEST_P(Flow, WeightHasTheForceAndPowerOfItsMass) {
   }
 }
 
-// Uniform translation: energy ½ m c², force m a, both with the mass of the area outside.
+// A uniform translation has the energy ½ m c² and the force m a, both with the mass of the area
+// outside.
 TEST_P(Flow, TotalMassAndMomentumAreThoseOfThePlate) {
   inertia->prepare(plate, {}, true);
   const double mass = kSection.density * kSection.thickness *

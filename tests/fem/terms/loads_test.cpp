@@ -1,13 +1,13 @@
-// Shows that loads are what they say: resultants and moments of the generalized force against the
-// statics of the load on the deformed shape, tangents against differences, the work of dead loads
-// as a potential, and the load factor.
+// Shows that loads are right: resultants and moments of the generalized force agree with the
+// statics of the load on the deformed shape, tangents agree with differences, dead loads have a
+// potential, and forces are proportional to the load factor.
 #include "fem/loads.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "fem/dynamics/mesh_changes/growth.h"
+#include "fem/dynamics/mesh_changes/moving_root.h"
 #include "tests/support/differences.h"
 #include "tests/support/space_plates.h"
 
@@ -25,7 +25,7 @@ struct LoadCase {
   std::unique_ptr<Term> (*make)();
 };
 
-/// A deformed plate that carries one load and nothing else.
+/// A deformed plate with one load only.
 class EveryLoad : public ::testing::TestWithParam<LoadCase> {
  protected:
   static SpacePlate plate() {
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
                  [] { return make_edge_moment("side_high", 2); }}),
     [](const auto& c) { return c.param.name; });
 
-// Along random directions; truncation (1e-3)⁴ and round-off 1e-16 / 1e-3 stay below 1e-9.
+// Along random directions truncation (1e-3)⁴ and round-off 1e-16 / 1e-3 are below 1e-9.
 TEST_P(EveryLoad, TangentIsTheDerivativeOfTheForce) {
   Constraints none;
   SparseMatrix k;
@@ -107,7 +107,7 @@ TEST_P(EveryLoad, IsProportionalToItsFactor) {
   EXPECT_LT((force(x.q) + 2.5 * one).norm(), 1e-14 * one.norm());
 }
 
-// The potential's derivative is the force (follower loads have none and say 0).
+// The derivative of the potential is the force (follower loads have no potential and give 0).
 TEST_P(EveryLoad, PotentialOfDeadLoadsIsTheirWork) {
   for (const char* follows : {"pressure", "moment", "turning"})
     if (GetParam().name.starts_with(follows)) {
@@ -125,7 +125,7 @@ TEST_P(EveryLoad, PotentialOfDeadLoadsIsTheirWork) {
   EXPECT_NEAR(dv, force(x.q).dot(direction), 1e-10 * std::abs(dv));
 }
 
-/// Resultant of a generalized force: its work at a unit translation.
+/// Returns the resultant of a generalized force: its work in a unit translation.
 Vec3 resultant(const Model& model, const VectorXd& f) {
   Vec3 out = Vec3::Zero();
   const Element& element = *model.bodies()[0].element;
@@ -134,7 +134,7 @@ Vec3 resultant(const Model& model, const VectorXd& f) {
   return out;
 }
 
-/// Its moment about the origin: the work at a unit rotation, under which all vectors turn.
+/// Returns the moment about the origin: the work in a unit rotation, in which all vectors rotate.
 Vec3 moment(const VectorXd& q, const VectorXd& f) {
   Vec3 out = Vec3::Zero();
   for (Eigen::Index k = 0; k < q.size(); k += 3)
@@ -145,7 +145,7 @@ Vec3 moment(const VectorXd& q, const VectorXd& f) {
 TEST_P(EveryLoad, ResultantIsThatOfTheLoad) {
   const Vec3 found = -resultant(model, force(x.q));
   const std::string name = GetParam().name;
-  Vec3 expected = Vec3::Zero();  // moments
+  Vec3 expected = Vec3::Zero();  // edge moments have no resultant
   if (name == "point") expected = {1, 2, 3};
   if (name == "edge") expected = 0.9 * Vec3(1, 2, 3);
   if (name == "surface") expected = 0.9 * 0.5 * Vec3(1, 2, 3);
@@ -157,11 +157,12 @@ TEST_P(EveryLoad, ResultantIsThatOfTheLoad) {
     const Vec3 r_m = (at(1e-5, 0) - at(-1e-5, 0)) / 2e-5, r_n = (at(0, 1e-5) - at(0, -1e-5)) / 2e-5;
     const Vec3 first = r_m.normalized(), third = r_m.cross(r_n).normalized();
     expected = first + 2 * third.cross(first) + 3 * third;
-    EXPECT_LT((found - expected).norm(), 1e-8);  // the differences' round-off and truncation
+    // tolerance: round-off and truncation of the differences
+    EXPECT_LT((found - expected).norm(), 1e-8);
     return;
   }
   if (name.starts_with("turning")) return;
-  if (name.starts_with("pressure")) {  // ∮ r × dr / 2: the vector area has no need of the inside
+  if (name.starts_with("pressure")) {  // ∮ r × dr / 2: the vector area depends on the boundary only
     const Element& element = *model.bodies()[0].element;
     const auto edge_integral = [&](const std::string& edge, bool along_m) {
       Vec3 sum = Vec3::Zero();
@@ -187,8 +188,8 @@ TEST_P(EveryLoad, ResultantIsThatOfTheLoad) {
   EXPECT_LT((found - expected).norm(), 1e-13 * (1 + expected.norm()));
 }
 
-// On the undeformed plate n̂ = e_z and slopes are e_x, e_y: outward slope e_x turned towards e_z is
-// a moment about -e_y.
+// On the undeformed plate n̂ = e_z, and slopes are e_x, e_y. Rotating the outward slope e_x towards
+// e_z is a moment about -e_y.
 TEST(EdgeMoment, TurnsTheOutwardSlopeTowardsTheNormal) {
   const struct {
     std::string edge;
@@ -213,8 +214,8 @@ TEST(EdgeMoment, TurnsTheOutwardSlopeTowardsTheNormal) {
 }
 
 TEST(Loads, RefuseWhatTheyCannotDo) {
-  const AncfPlate flat(2, ShapeSet::h16, testing::even_lines(0, 1, 1),
-                       testing::even_lines(0, 1, 1));
+  const AncfPlate flat(2, ShapeSet::h16, testing::uniform_lines(0, 1, 1),
+                       testing::uniform_lines(0, 1, 1));
   const auto refused = [](const std::unique_ptr<Term>& term, const Element& element) {
     try {
       term->prepare(element, {}, true);

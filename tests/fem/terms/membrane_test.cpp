@@ -1,7 +1,7 @@
-// Shows that the Gram form of the in-plane elastic force is the St. Venant-Kirchhoff plate: against
-// a plain Gauss implementation of the virtual work, against differences, with uniform material and
-// with design cells cut by moving lines; that rigid motions strain nothing; and that the power of
-// the flow closes the balance of the strain energy.
+// Shows that the Gram form of the in-plane elastic force is the St. Venant-Kirchhoff plate, against
+// a plain Gauss integration of the virtual work and against differences, with uniform material and
+// with cells cut by moving lines; that rigid motions have no strain; and that the power of the flow
+// closes the balance of the strain energy.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ Point point(const ShapeTable& t, const LocalRows& q) {
   return p;
 }
 
-/// Variation of the strain by unknown (k, c).
+/// Returns the variation of the strain by unknown (k, c).
 Vec3 variation(const Point& p, const ShapeTable& t, Eigen::Index k, Eigen::Index c) {
   return {t.N_m(0, k) * p.r_m[c], t.N_n(0, k) * p.r_n[c],
           t.N_m(0, k) * p.r_n[c] + t.N_n(0, k) * p.r_m[c]};
@@ -48,10 +48,10 @@ struct ByPoints {
   const AncfPlate& plate;
   int e;
   const LocalRows& q;
-  const Factors& factors;
+  const ScaleFactors& factors;
 
   double sum(const std::function<double(const ShapeTable&)>& f) const {
-    return testing::integrate(plate, e, factors, FactorKind::stiffness, Tabulate::gradient, f);
+    return testing::integrate(plate, e, factors, ScaleFactorKind::stiffness, Tabulate::gradient, f);
   }
   double energy() const {
     return sum([&](const ShapeTable& t) {
@@ -109,12 +109,12 @@ class Membrane : public ::testing::TestWithParam<Case> {
     term->add_tangent(e, x, {1, 0, 0}, k);
     return k;
   }
-  double unit_energy() const {  // of unit strain everywhere, about
+  double unit_energy() const {  // approximate energy of unit strain everywhere
     return kSection.youngs_modulus * kSection.thickness * 0.1 * 0.06;
   }
 
   AncfPlate plate = swinging_plate(GetParam().shapes);
-  Factors factors;
+  ScaleFactors factors;
   BodyTerm term = make_membrane(kSection);
 };
 INSTANTIATE_TEST_SUITE_P(Shapes, Membrane,
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Membrane,
                                   (c.param.designed ? "_designed" : "_uniform");
                          });
 
-// Both are exact for the polynomial of degree 12, so they differ by round-off of about
+// Both are exact for the polynomial of degree 12, so that they differ only by round-off of about
 // 10^4 products.
 TEST_P(Membrane, ForceAndEnergyAreThoseOfGaussPoints) {
   for (int e = 0; e < plate.n_elements(); ++e) {
@@ -147,7 +147,8 @@ TEST_P(Membrane, TangentIsThatOfGaussPoints) {
   const ByPoints points{plate, e, x.q, factors};
   const LocalTangent k = tangent(e, x);
   const double largest = k.cwiseAbs().maxCoeff();
-  // Every seventh entry: the loop over points is slow, and 7 is prime to the pattern.
+  // Only every seventh entry is compared, because the loop over points is slow; 7 is prime to the
+  // pattern.
   for (Eigen::Index entry = 0; entry < k.size(); entry += 7) {
     const Eigen::Index row = entry / k.cols(), column = entry % k.cols();
     EXPECT_NEAR(k(row, column), points.tangent(row / 2, row % 2, column / 2, column % 2),
@@ -155,7 +156,7 @@ TEST_P(Membrane, TangentIsThatOfGaussPoints) {
   }
 }
 
-// The force is cubic in the unknowns: differences of order 4 are exact but for round-off.
+// The force is cubic in the unknowns: differences of order 4 are exact except for round-off.
 TEST_P(Membrane, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
   const int e = 2;
   const Local x = local(e);
@@ -185,7 +186,7 @@ TEST_P(Membrane, TangentIsTheDerivativeOfTheForceAndForceThatOfTheEnergy) {
     }
 }
 
-// A motion of 10 m has round-off of 10 m x 1e-16 in the positions, 2e-14 of the element size.
+// A motion of 10 m has a round-off of 10 m x 1e-16 in the positions, 2e-14 of the element size.
 TEST_P(Membrane, RigidMotionStrainsNothing) {
   Eigen::Matrix2d turn;
   turn << std::cos(0.7), -std::sin(0.7), std::sin(0.7), std::cos(0.7);
@@ -200,7 +201,7 @@ TEST_P(Membrane, RigidMotionStrainsNothing) {
   }
 }
 
-// Stress and strain turn with the body: the same energy after a large rotation.
+// Stress and strain rotate with the body; therefore the energy does not change in a large rotation.
 TEST_P(Membrane, EnergyDoesNotSeeRotations) {
   Eigen::Matrix2d turn;
   turn << std::cos(2.1), -std::sin(2.1), std::sin(2.1), std::cos(2.1);
@@ -210,9 +211,9 @@ TEST_P(Membrane, EnergyDoesNotSeeRotations) {
   EXPECT_NEAR(term->strain_energy(1, x), before, 1e-12 * before);
 }
 
-// dU/dt with standing unknowns = power of the flow + energy density x speed over the moving edges
-// (the part balance.h counts as inflow, which flow_power() leaves out). Uniform material only: with
-// cells the edge term jumps with the factor.
+// With constant unknowns, dU/dt = power of the flow + energy density x speed over the moving edges
+// (which balance.h counts as inflow and flow_power() does not contain). Only uniform material is
+// tested, because with cells the edge term jumps with the factor.
 TEST_P(Membrane, FlowPowerClosesTheEnergyBalance) {
   if (GetParam().designed) return;
   const double time = 0.37;

@@ -8,13 +8,13 @@ namespace {
 /// The weighted sum f = Σ w_l C_l [J] with the compliances C_l of the loads (ComplianceEvaluator).
 class Sum final : public Response {
  public:
-  void evaluate(const Seen& at, Values& out) override { at.state.sum(at.factors, out); }
+  void evaluate(const DesignView& at, Values& out) override { at.state.sum(at.factors, out); }
 };
 
 /// The power mean f = (Σ C_l^p / m)^(1/p) [J] of m loads with p = kPeakExponent.
 class Peak final : public Response {
  public:
-  void evaluate(const Seen& at, Values& out) override {
+  void evaluate(const DesignView& at, Values& out) override {
     at.state.each(at.factors, each_);
     const double largest = each_.f.maxCoeff(), m = static_cast<double>(each_.f.size());
     const VectorXd parts = each_.f / largest;
@@ -37,7 +37,7 @@ class Peak final : public Response {
 /// The compliances f_l = C_l [J] of all loads.
 class Worst final : public Response {
  public:
-  void evaluate(const Seen& at, Values& out) override { at.state.each(at.factors, out); }
+  void evaluate(const DesignView& at, Values& out) override { at.state.each(at.factors, out); }
 };
 
 }  // namespace

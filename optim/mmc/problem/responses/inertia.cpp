@@ -37,7 +37,7 @@ class Inertia final : public Response {
  public:
   explicit Inertia(const Plate& plate) : by_cell_(by_cell(plate)) {}
 
-  void evaluate(const Seen& at, Values& out) override {
+  void evaluate(const DesignView& at, Values& out) override {
     out.f = by_cell_ * at.factors.mass;
     out.d_mass = by_cell_;
   }
@@ -50,7 +50,7 @@ class Inertia final : public Response {
 
 extern const ResponseRow kInertia;
 const ResponseRow kInertia{.name = "inertia",
-                           .words = "moment of inertia about the root",
+                           .words = "mass moment of inertia about the root",
                            .unit = "kg m^2",
                            .full = full_inertia,
                            .linear = true,

@@ -9,9 +9,10 @@ namespace {
 template <const ResponseRow& row>
 class OfMotion final : public Response {
  public:
-  void evaluate(const Seen& at, Values& out) override {
+  void evaluate(const DesignView& at, Values& out) override {
     if (!at.motion)
-      throw Error::input("the " + std::string(row.words) + " is one of a motion: there is none");
+      throw Error::input("the " + std::string(row.words) +
+                         " needs a motion, but there is no motion");
     at.motion->state->value(row, at.motion->body, out);
   }
 };
@@ -40,13 +41,13 @@ const ResponseRow kDeflection{.name = "deflection",
                               .make = make_response<OfMotion<kDeflection>>};
 
 const ResponseRow kTrajectoryError{.name = "trajectory_error",
-                                   .words = "error of the trajectory",
+                                   .words = "trajectory error",
                                    .unit = "m",
                                    .of_motion = true,
                                    .make = make_response<OfMotion<kTrajectoryError>>};
 
 const ResponseRow kJointForce{.name = "joint_force",
-                              .words = "force in the joint that carries the body",
+                              .words = "force in the joint that supports the body",
                               .unit = "N",
                               .of_motion = true,
                               .of_body = true,

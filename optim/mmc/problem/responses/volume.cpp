@@ -12,7 +12,7 @@ class Volume final : public Response {
         scale_(scale),
         share_(MatrixXd::Constant(1, plate.grid.n_cells(), scale / n_domain_cells_)) {}
 
-  void evaluate(const Seen& at, Values& out) override {
+  void evaluate(const DesignView& at, Values& out) override {
     out.f = VectorXd::Constant(1, scale_ * (at.factors.mass.sum() / n_domain_cells_));
     out.d_mass = share_;
   }
