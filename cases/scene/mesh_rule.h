@@ -6,7 +6,7 @@
 namespace flexmorph::cases {
 
 /// Determines how the mesh of a body follows its changing length, and its number of elements. If
-/// the case does not give `mesh`, the mesh stays uniform ("uniform") where the length changes by
+/// the case does not give `mesh`, it is "uniform" where the length changes by
 /// less than a factor of four, no element becomes shorter than min_length, and no load, spring,
 /// joint or mass acts inside of the body, where moving lines would pass it; otherwise lines are
 /// inserted and removed ("split").
