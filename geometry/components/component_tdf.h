@@ -8,6 +8,7 @@
 
 #include "geometry/components/component_frame.h"
 #include "geometry/components/tdf.h"
+#include "geometry/vector_level.h"
 
 /// The topology description function (TDF) of one component at many points: the inner loops of
 /// UnionTdf. The header is internal to geometry/components/tdf.cpp and tdf_curvature.cpp, whose
@@ -191,41 +192,45 @@ Partials<T> partials(const HalfThickness<T>& shape, const T& x, const T& y) {
 }
 
 /// Fills `phi` with φ at `count` points (x, y) of the component's frame.
-inline void tdf_at_points(const ComponentFrame& frame, TdfSettings::Kind kind, int count,
-                          const double* x, const double* y, double* phi) {
-  if (kind == TdfSettings::Kind::paper) {
+template <TdfSettings::Kind kind>
+void tdf_at_points(const ComponentFrame& frame, int count, const double* x, const double* y,
+                   double* phi) {
+  run_kernel([=, &frame]<int>() {
+    const ComponentFrame f = frame;
 #pragma omp simd
-    for (int k = 0; k < count; ++k) phi[k] = paper_tdf(frame, x[k], y[k]);
-  } else {
-#pragma omp simd
-    for (int k = 0; k < count; ++k) phi[k] = distance_tdf(frame, x[k], y[k]);
-  }
+    for (int k = 0; k < count; ++k)
+      phi[k] = kind == TdfSettings::Kind::paper ? paper_tdf(f, x[k], y[k])
+                                                : distance_tdf(f, x[k], y[k]);
+  });
 }
 
 /// Adds up Σ_k seed_k dφ(x_k, y_k)/dp for the seven parameters p and writes the sums to `out` (7).
 template <TdfSettings::Kind kind>
 void sum_chain(const ComponentFrame& frame, int count, const double* px, const double* py,
                const double* seed, double* out) {
-  double by_x = 0, by_y = 0, by_angle = 0, by_L = 0, by_c1 = 0, by_c2 = 0, by_c3 = 0;
+  run_kernel([=, &frame]<int>() {
+    const HalfThickness<double> shape = frame.shape();
+    double by_x = 0, by_y = 0, by_angle = 0, by_L = 0, by_c1 = 0, by_c2 = 0, by_c3 = 0;
 #pragma omp simd reduction(+ : by_x, by_y, by_angle, by_L, by_c1, by_c2, by_c3)
-  for (int k = 0; k < count; ++k) {
-    const double x = px[k], y = py[k], f = seed[k];
-    const Partials<double> d = partials<kind>(frame.shape(), x, y);
-    by_x += f * d.x;
-    by_y += f * d.y;
-    by_angle += f * (d.x * y - d.y * x);
-    by_L += f * d.L;
-    by_c1 += f * d.c1;
-    by_c2 += f * d.c2;
-    by_c3 += f * d.c3;
-  }
-  out[0] = frame.sine() * by_y - frame.cosine() * by_x;
-  out[1] = -frame.sine() * by_x - frame.cosine() * by_y;
-  out[2] = by_L;
-  out[3] = by_angle;
-  out[4] = by_c1;
-  out[5] = by_c2;
-  out[6] = by_c3;
+    for (int k = 0; k < count; ++k) {
+      const double x = px[k], y = py[k], f = seed[k];
+      const Partials<double> d = partials<kind>(shape, x, y);
+      by_x += f * d.x;
+      by_y += f * d.y;
+      by_angle += f * (d.x * y - d.y * x);
+      by_L += f * d.L;
+      by_c1 += f * d.c1;
+      by_c2 += f * d.c2;
+      by_c3 += f * d.c3;
+    }
+    out[0] = frame.sine() * by_y - frame.cosine() * by_x;
+    out[1] = -frame.sine() * by_x - frame.cosine() * by_y;
+    out[2] = by_L;
+    out[3] = by_angle;
+    out[4] = by_c1;
+    out[5] = by_c2;
+    out[6] = by_c3;
+  });
 }
 
 /// Computes weight_k dφ(x_k, y_k)/dp for the seven parameters p, one column of `out` each (count x
@@ -233,20 +238,23 @@ void sum_chain(const ComponentFrame& frame, int count, const double* px, const d
 template <TdfSettings::Kind kind>
 void fill_chain(const ComponentFrame& frame, int count, const double* px, const double* py,
                 const double* weight, double* out) {
-  const double sine = frame.sine(), cosine = frame.cosine();
-  const std::ptrdiff_t n = count;
+  run_kernel([=, &frame]<int>() {
+    const HalfThickness<double> shape = frame.shape();
+    const double sine = frame.sine(), cosine = frame.cosine();
+    const std::ptrdiff_t n = count;
 #pragma omp simd
-  for (std::ptrdiff_t k = 0; k < n; ++k) {
-    const double x = px[k], y = py[k], f = weight[k];
-    const Partials<double> d = partials<kind>(frame.shape(), x, y);
-    out[k] = f * (sine * d.y - cosine * d.x);
-    out[n + k] = f * (-sine * d.x - cosine * d.y);
-    out[2 * n + k] = f * d.L;
-    out[3 * n + k] = f * (d.x * y - d.y * x);
-    out[4 * n + k] = f * d.c1;
-    out[5 * n + k] = f * d.c2;
-    out[6 * n + k] = f * d.c3;
-  }
+    for (std::ptrdiff_t k = 0; k < n; ++k) {
+      const double x = px[k], y = py[k], f = weight[k];
+      const Partials<double> d = partials<kind>(shape, x, y);
+      out[k] = f * (sine * d.y - cosine * d.x);
+      out[n + k] = f * (-sine * d.x - cosine * d.y);
+      out[2 * n + k] = f * d.L;
+      out[3 * n + k] = f * (d.x * y - d.y * x);
+      out[4 * n + k] = f * d.c1;
+      out[5 * n + k] = f * d.c2;
+      out[6 * n + k] = f * d.c3;
+    }
+  });
 }
 
 /// Derivatives by the seven parameters of a component.

@@ -110,13 +110,16 @@ void UnionTdf::find_reach(std::span<const Component> components) {
   ends_.clear();
   visits_.clear();
   highest_.setConstant(cut_);
+  using Kind = TdfSettings::Kind;
+  const auto at_points =
+      settings_.kind == Kind::paper ? tdf_at_points<Kind::paper> : tdf_at_points<Kind::distance>;
   for (const Component& component : components) {
     const ComponentFrame frame(component, settings_.min_half_thickness);
     const std::size_t first_run = runs_.size(), first_visit = visits_.size();
     add_runs(frame);
     double* value = visits_.data() + first_visit;
     const int count = static_cast<int>(visits_.size() - first_visit);
-    tdf_at_points(frame, settings_.kind, count, scratch_.x.data(), scratch_.y.data(), value);
+    at_points(frame, count, scratch_.x.data(), scratch_.y.data(), value);
     for (std::size_t r = first_run; r < runs_.size(); value += runs_[r].count, ++r) {
       double* highest = highest_.data() + grid_.node(runs_[r].column, runs_[r].row);
       for (int k = 0; k < runs_[r].count; ++k) highest[k] = std::max(highest[k], value[k]);
