@@ -2,77 +2,150 @@
 
 #include <cblas.h>
 
-#include "geometry/base.h"
+#include <algorithm>
+#include <cmath>
 
-/// Operations of a supernodal factor on one of its dense blocks (supernodal_factor.cpp).
+#include "fem/solve/factorization/register_tiles.h"
+
+/// Factorization of one block of neighbouring columns of a supernodal factor (multifrontal.cpp): a
+/// dense lower triangle above a rectangle, by columns. Most blocks are small; there products in
+/// registers take less time than calls of BLAS, which pack their operands first.
 namespace flexmorph::fem::dense {
 
-/// View of a column-major matrix with a given distance of its columns.
-using Dense = Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>;
-/// Size up to which a triangle is factored without being halved.
-inline constexpr Eigen::Index kUndivided = 16;
+using namespace register_tiles;
 
-/// Computes the dense Cholesky factor of the lower triangle in place. For many small triangles it
-/// is faster than LAPACK.
-/// @returns the first column whose pivot is not positive, or -1.
-inline Eigen::Index cholesky(Dense a) {
-  const Eigen::Index n = a.rows();
-  if (n > kUndivided) {
-    const Eigen::Index half = n / 2, rest = n - half;
-    const Eigen::OuterStride<> stride(a.outerStride());
-    Dense upper(a.data(), half, half, stride), below(&a(half, 0), rest, half, stride),
-        lower(&a(half, half), rest, rest, stride);
-    if (const Eigen::Index failed = cholesky(upper); failed >= 0) return failed;
-    upper.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-    lower.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
-    const Eigen::Index failed = cholesky(lower);
-    return failed < 0 ? -1 : half + failed;
-  }
-  for (Eigen::Index c = 0; c < n; ++c) {
-    if (!(a(c, c) > 0)) return c;
-    a.col(c).tail(n - c) /= std::sqrt(a(c, c));
-    for (Eigen::Index k = c + 1; k < n; ++k) a.col(k).tail(n - k) -= a(k, c) * a.col(c).tail(n - k);
+/// Computes the Cholesky factor of a triangle of n <= 8 columns in place.
+/// @returns the first column whose pivot is not positive, or -1
+inline int factor_triangle(double* a, std::ptrdiff_t ld, int n) {
+  for (int c = 0; c < n; ++c) {
+    double* column = a + c * ld;
+    if (!(column[c] > 0)) return c;
+    const double pivot = std::sqrt(column[c]);
+    for (int r = c; r < n; ++r) column[r] /= pivot;
+    for (int k = c + 1; k < n; ++k)
+      for (int r = k; r < n; ++r) a[k * ld + r] -= column[k] * column[r];
   }
   return -1;
 }
 
-// Products with one block for `count` loads at y, `ld` apart from unknown to unknown. A single load
-// uses matrix-vector products, because its cost is dominated by reading L from memory.
-
-/// Computes y <- y L⁻ᵀ of the triangle (forward), or y L⁻¹.
-inline void solve_triangle(const double* block, int width, int height, bool forward, double* y,
-                           int ld, int count) {
-  if (count == 1) {
-    cblas_dtrsv(CblasColMajor, CblasLower, forward ? CblasNoTrans : CblasTrans, CblasNonUnit, width,
-                block, height, y, ld);
-  } else {
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, forward ? CblasTrans : CblasNoTrans,
-                CblasNonUnit, count, width, 1, block, height, y, ld);
+/// Subtracts the product of the columns before c from the columns [c, c + kColumns) of the rows of
+/// one tile, and with `solve` divides by the triangle of these columns.
+/// @param block  first row and column
+template <class T, int kColumns, int kPacks>
+inline void factor_rows(double* block, std::ptrdiff_t ld, int c, int row, bool solve) {
+  T y[kColumns][kPacks];
+  double* target = block + c * ld + row;
+  read<T>(y, [&](int t) { return target + t * ld; });
+  subtract(
+      y, c, [&](int k) { return block + k * ld + row; }, block + c, ld, 1);
+  if (solve) {
+    const double* L = block + c * ld + c;
+#pragma GCC unroll 8
+    for (int t = 0; t < kColumns; ++t)
+#pragma GCC unroll 4
+      for (int p = 0; p < kPacks; ++p) {
+#pragma GCC unroll 8
+        for (int s = 0; s < t; ++s) y[t][p] -= L[s * ld + t] * y[s][p];
+        y[t][p] = y[t][p] / L[t * ld + t];
+      }
   }
+  write<T>(y, [&](int t) { return target + t * ld; });
 }
 
-/// Computes below <- factor * below - y L_belowᵀ.
-inline void push_below(const double* rectangle, int n_below, int width, int height, const double* y,
-                       int ld, int count, double factor, double* below, int below_ld) {
-  if (count == 1) {
-    cblas_dgemv(CblasColMajor, CblasNoTrans, n_below, width, -1, rectangle, height, y, ld, factor,
-                below, below_ld);
-  } else {
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, count, n_below, width, -1, y, ld,
-                rectangle, height, factor, below, below_ld);
-  }
+/// Factors a block of few columns.
+/// @returns the first column whose pivot is not positive, or -1
+template <class V>
+inline int factor_panel(double* block, std::ptrdiff_t ld, int width, int height) {
+  int failed = -1;
+  const auto columns = [&]<int n>(int c) {
+    // Rows of the triangle are computed one by one, entries above the diagonal are not used.
+    for (int r = c; r < c + n; ++r) factor_rows<double, n, 1>(block, ld, c, r, false);
+    failed = factor_triangle(block + c * ld + c, ld, n);
+    if (failed >= 0) {
+      failed += c;
+      return false;
+    }
+    each_tile<V>(height - c - n, [&]<class T, int kTile, int kPacks>(int r) {
+      factor_rows<T, n, kPacks>(block, ld, c, c + n + r, true);
+    });
+    return true;
+  };
+  int c = 0;
+  constexpr int kColumns = V::kParts == 1 ? 8 : 4;
+  for (; c + kColumns <= width; c += kColumns)
+    if (!columns.template operator()<kColumns>(c)) return failed;
+  if constexpr (kColumns > 4)
+    for (; c + 4 <= width; c += 4)
+      if (!columns.template operator()<4>(c)) return failed;
+  for (; c + 2 <= width; c += 2)
+    if (!columns.template operator()<2>(c)) return failed;
+  for (; c < width; ++c)
+    if (!columns.template operator()<1>(c)) return failed;
+  return -1;
 }
 
-/// Computes y <- y - below L_below.
-inline void pull_below(const double* rectangle, int n_below, int width, int height,
-                       const double* below, int below_ld, int count, double* y, int ld) {
-  if (count == 1) {
-    cblas_dgemv(CblasColMajor, CblasTrans, n_below, width, -1, rectangle, height, below, below_ld,
-                1, y, ld);
-  } else {
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, width, n_below, -1, below,
-                below_ld, rectangle, height, 1, y, ld);
+/// Factors a block: its triangle becomes L, its rectangle B becomes B L⁻ᵀ.
+/// @param block  (height x width); entries above the diagonal are not read and may change
+/// @returns the first column whose pivot is not positive, or -1
+inline int factor_block(double* block, int width, int height) {
+  constexpr int kPanel = 48;  // from this width on products of BLAS are faster
+  for (int c = 0; c < width; c += kPanel) {
+    const int n = std::min(kPanel, width - c), rest = width - c - n, below = height - width;
+    double* panel = block + static_cast<std::ptrdiff_t>(c) * height + c;
+    int failed = -1;
+    run_batch_kernel([&]<class V>() { failed = factor_panel<V>(panel, height, n, height - c); });
+    if (failed >= 0) return c + failed;
+    if (rest == 0) continue;
+    double* next = panel + static_cast<std::ptrdiff_t>(n) * height + n;
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, rest, n, -1, panel + n, height, 1, next,
+                height);
+    if (below > 0)
+      cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, below, rest, n, -1, panel + n + rest,
+                  height, panel + n, height, 1, next + rest, height);
   }
+  return -1;
+}
+
+/// Computes the columns [c, c + kColumns) of own <- keep * own - B Bᵀ in the rows of one tile.
+template <class T, int kColumns, int kPacks>
+inline void update_rows(const double* B, std::ptrdiff_t ld, int width, bool keep, double* own,
+                        std::ptrdiff_t own_ld, int c, int row) {
+  T y[kColumns][kPacks];
+  double* target = own + c * own_ld + row;
+  if (keep)
+    read<T>(y, [&](int t) { return target + t * own_ld; });
+  else
+    for (auto& of_column : y)
+      for (T& value : of_column) value = T{};
+  subtract(
+      y, width, [&](int k) { return B + k * ld + row; }, B + c, ld, 1);
+  write<T>(y, [&](int t) { return target + t * own_ld; });
+}
+
+/// Computes the lower triangle of own <- keep * own - B Bᵀ.
+/// @param B    (n x width) by columns, their distance ld
+/// @param own  (n x n); entries above the diagonal may change
+inline void update(const double* B, int ld, int n, int width, bool keep, double* own) {
+  // Smaller products are faster in registers (measured on factors of plates).
+  constexpr double kMinBlasProduct = 64.0 * 64 * 48;
+  if (static_cast<double>(n) * n * width > kMinBlasProduct) {
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, width, -1, B, ld, keep ? 1 : 0, own, n);
+    return;
+  }
+  run_batch_kernel([&]<class V>() {
+    const auto columns = [&]<int k>(int c) {
+      each_tile<V>(n - c, [&]<class T, int kTile, int kPacks>(int r) {
+        update_rows<T, k, kPacks>(B, ld, width, keep, own, n, c, c + r);
+      });
+    };
+    int c = 0;
+    constexpr int kColumns = V::kParts == 1 ? 8 : 4;
+    for (; c + kColumns <= n; c += kColumns) columns.template operator()<kColumns>(c);
+    if constexpr (kColumns > 4)
+      for (; c + 4 <= n; c += 4) columns.template operator()<4>(c);
+    for (; c + 2 <= n; c += 2) columns.template operator()<2>(c);
+    for (; c < n; ++c) columns.template operator()<1>(c);
+  });
 }
 
 }  // namespace flexmorph::fem::dense

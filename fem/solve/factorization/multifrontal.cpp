@@ -12,9 +12,6 @@ namespace flexmorph::fem {
 
 namespace {
 
-using dense::cholesky;
-using dense::Dense;
-
 // Smallest ratio of a pivot to its diagonal entry. A smaller one is cancellation of all digits, as
 // for a plate that is disconnected from its root. (A plate that is connected by void of factor 1e-9
 // has about 1e-9.)
@@ -64,16 +61,11 @@ void Multifrontal::add_update(int child, const double* update, int parent, doubl
 /// Computes L of a block to which all updates have been added, and its update of the rows below:
 /// own <- keep * own - L_below L_belowᵀ (lower triangle).
 /// @returns the column of the block that fails, or -1.
-int Multifrontal::factorize_block(int s, double* block, double keep, double* own) const {
+int Multifrontal::factorize_block(int s, double* block, bool keep, double* own) const {
   const int width = blocks_.width(s), height = blocks_.height(s), n_below = height - width;
-  const Eigen::Index failed = cholesky(Dense(block, width, width, Eigen::OuterStride<>(height)));
-  if (failed >= 0) return static_cast<int>(failed);
-  if (n_below == 0) return -1;
-  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, n_below, width, 1,
-              block, height, block + width, height);
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n_below, width, -1, block + width, height,
-              keep, own, n_below);
-  return -1;
+  const int failed = dense::factor_block(block, width, height);
+  if (failed < 0 && n_below > 0) dense::update(block + width, height, n_below, width, keep, own);
+  return failed;
 }
 
 /// Returns the column of a factored block whose pivot is too small or not finite, or -1.
@@ -111,8 +103,8 @@ int Multifrontal::factorize(MatrixXd* border) {
     const auto has_child = [&] {
       return !waiting_.empty() && b.parent[static_cast<std::size_t>(waiting_.back())] == s;
     };
-    const double keep = has_child() ? 1 : 0;
-    for (std::size_t c = 0; keep != 0 && c < n_below; ++c)
+    const bool keep = has_child();
+    for (std::size_t c = 0; keep && c < n_below; ++c)
       std::fill(own + c * n_below + c, own + (c + 1) * n_below, 0.0);
     std::size_t bottom = top;
     while (has_child()) {

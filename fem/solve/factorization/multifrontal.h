@@ -49,7 +49,7 @@ class Multifrontal {
  private:
   void fill_block(int s, double* block);
   void add_update(int child, const double* update, int parent, double* block, double* own) const;
-  int factorize_block(int s, double* block, double keep, double* own) const;
+  int factorize_block(int s, double* block, bool keep, double* own) const;
   int smallest_pivot(int s) const;
   void add_to_border(int s, const double* update, MatrixXd& border) const;
 

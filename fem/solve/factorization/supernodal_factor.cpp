@@ -6,16 +6,13 @@
 #include <cstddef>
 #include <utility>
 
-#include "fem/solve/factorization/dense_blocks.h"
+#include "fem/solve/factorization/load_substitution.h"
 #include "fem/solve/factorization/multifrontal.h"
+#include "fem/solve/factorization/substitution.h"
 
 namespace flexmorph::fem {
 
 namespace {
-
-using dense::pull_below;
-using dense::push_below;
-using dense::solve_triangle;
 
 /// A range of loads, [first, first + count).
 struct LoadRange {
@@ -45,36 +42,28 @@ LoadRange reaching(std::span<const int> active, int column, const LoadRange& min
   return {std::min(first, mine.first + mine.count), std::max(0, end - first)};
 }
 
-/// Blocks of loads that are processed together. They do not depend on the number of threads,
-/// because BLAS sums in an order that depends on the number of columns, and the last bits of
-/// results would differ. A supernode stays in the cache from block to block.
-struct LoadBlocks {
-  /// Fewer loads do too little work per entry of L that is read.
-  static constexpr int kMinLoads = 16;
-  static constexpr int kMaxThreads = 4;
+constexpr int kUnit = 16;  // Loads that are processed together.
 
-  int n_loads, n;
-  int first = 0, last = 0;  ///< Blocks of one thread.
-
-  explicit LoadBlocks(int loads)
-      : n_loads(loads), n(std::clamp(loads / kMinLoads, 1, kMaxThreads)), last(n) {}
-  LoadRange block(int k) const {
-    const int from = n_loads * k / n, to = n_loads * (k + 1) / n;
-    return {from, to - from};
-  }
-};
-
-/// Calls use(blocks) for the blocks of every thread, in parallel.
+/// Calls use(loads) for the loads of every thread, in parallel. Results do not depend on the number
+/// of threads, because no load depends on others (load_substitution.h).
 template <class Use>
 void each_share(Eigen::Index n_loads, const Use& use) {
-  const LoadBlocks all(static_cast<int>(n_loads));
-  const int parts = std::min(all.n, omp_get_max_threads());
+  const int n = static_cast<int>(n_loads), units = (n + kUnit - 1) / kUnit;
+  const int parts = std::clamp(units, 1, omp_get_max_threads());
 #pragma omp parallel for schedule(static, 1) num_threads(parts) if (parts > 1)
   for (int k = 0; k < parts; ++k) {
-    LoadBlocks mine = all;
-    mine.first = all.n * k / parts;
-    mine.last = all.n * (k + 1) / parts;
-    use(mine);
+    const int first = kUnit * (units * k / parts);
+    use(LoadRange{first, std::min(kUnit * (units * (k + 1) / parts), n) - first});
+  }
+}
+
+/// Calls a Fill in units that do not depend on the number of threads, because the last bits of a
+/// product of BLAS depend on its size.
+void fill_by_units(const SupernodalFactor::Fill& fill, int first, int last, LoadRange loads) {
+  for (const int end = loads.first + loads.count; loads.first < end;) {
+    const int next = std::min((loads.first / kUnit + 1) * kUnit, end);
+    fill(first, last, loads.first, next - loads.first);
+    loads.first = next;
   }
 }
 
@@ -82,62 +71,40 @@ void each_share(Eigen::Index n_loads, const Use& use) {
 
 struct SupernodalFactor::Impl {
   Multifrontal front;
-  std::vector<char> contiguous;  // by supernode: 1 if its rows below the triangle are a range
-  // (rows below x n_loads), work space for supernodes that are not contiguous
-  mutable MatrixXd gathered;
-  int most_below = 0;
+  int highest = 0;               // largest number of rows of a block
+  mutable MatrixXd single_load;  // work space of every thread for the rows of a block
 
-  struct Supernode {
-    int first, last;      // columns
-    int height, n_below;  // rows of the block, rows below its triangle
-    const double* block;  // column-major, leading dimension height
-    const int* below;     // row indices
-    bool contiguous;
-
-    int width() const { return last - first; }
-    const double* rectangle() const { return block + width(); }
-  };
-
-  Impl(std::vector<int> starts, std::vector<int> rows)
-      : front(std::move(starts), std::move(rows)) {}
+  Impl(std::vector<int> starts, std::vector<int> rows) : front(std::move(starts), std::move(rows)) {
+    for (int s = 0; s < n_supernodes(); ++s) highest = std::max(highest, front.blocks().height(s));
+  }
 
   int n_supernodes() const { return front.blocks().n_blocks(); }
 
-  Supernode supernode(int s) const {
-    const auto at = static_cast<std::size_t>(s);
-    const Supernodes& blocks = front.blocks();
-    return {blocks.first[at], blocks.first[at + 1], blocks.height(s),   blocks.n_below(s),
-            front.block(s),   blocks.below(s),      contiguous[at] != 0};
+  /// Returns a block and the loads [load, load + count) of x.
+  LoadBlock block(int s, MatrixXd& x, int load, int count) const {
+    const Supernodes& b = front.blocks();
+    return {front.block(s), b.width(s),  b.height(s), b.first[static_cast<std::size_t>(s)],
+            b.below(s),     &x(load, 0), x.rows(),    count};
   }
 
-  void find_ranges();
   void forward(int s, MatrixXd& x, std::span<const int> active, int tail,
                const LoadRange& mine) const;
   void backward(int s, MatrixXd& x, std::span<const int> active, const Fill& fill,
                 const LoadRange& mine) const;
-  void reserve_memory(Eigen::Index n_loads) const {
-    if (gathered.cols() < n_loads || gathered.rows() < most_below)
-      gathered.resize(most_below, n_loads);
+  void reserve_memory() const {
+    const int threads = omp_get_max_threads();
+    if (single_load.cols() < threads) single_load.resize(highest, threads);
   }
-  /// Returns work space for the rows below a block that only these loads use.
-  double* gather_buffer(const LoadRange& mine) const { return gathered.col(mine.first).data(); }
+  /// Copies the rows of a block for a single load to the work space of the thread.
+  double* gather(const LoadBlock& b) const {
+    double* y = single_load.col(omp_get_thread_num()).data();
+    for (int r = 0; r < b.height; ++r) y[r] = *b.row(r);
+    return y;
+  }
 };
 
-void SupernodalFactor::Impl::find_ranges() {
-  contiguous.resize(static_cast<std::size_t>(n_supernodes()));
-  for (int s = 0; s < n_supernodes(); ++s) {
-    const int n = front.blocks().n_below(s);
-    const int* below = front.blocks().below(s);
-    const bool range = n == 0 || below[n - 1] - below[0] == n - 1;
-    contiguous[static_cast<std::size_t>(s)] = range;
-    if (!range) most_below = std::max(most_below, n);
-  }
-}
-
 SupernodalFactor::SupernodalFactor(std::vector<int> starts, std::vector<int> rows)
-    : impl_(std::make_unique<Impl>(std::move(starts), std::move(rows))) {
-  impl_->find_ranges();
-}
+    : impl_(std::make_unique<Impl>(std::move(starts), std::move(rows))) {}
 
 SupernodalFactor::~SupernodalFactor() = default;
 SupernodalFactor::SupernodalFactor(SupernodalFactor&&) noexcept = default;
@@ -150,81 +117,56 @@ double SupernodalFactor::condition() const { return impl_->front.condition(); }
 
 void SupernodalFactor::forward(MatrixXd& x, std::span<const int> active, int tail) const {
   const Impl& m = *impl_;
-  m.reserve_memory(x.rows());
-  each_share(x.rows(), [&](const LoadBlocks& mine) {
-    for (int s = 0; s < m.n_supernodes(); ++s)
-      for (int k = mine.first; k < mine.last; ++k) m.forward(s, x, active, tail, mine.block(k));
+  m.reserve_memory();
+  each_share(x.rows(), [&](const LoadRange& mine) {
+    for (int s = 0; s < m.n_supernodes(); ++s) m.forward(s, x, active, tail, mine);
   });
 }
 
 void SupernodalFactor::backward(MatrixXd& x, std::span<const int> active, const Fill& fill) const {
   const Impl& m = *impl_;
-  m.reserve_memory(x.rows());
-  each_share(x.rows(), [&](const LoadBlocks& mine) {
-    for (int s = m.n_supernodes() - 1; s >= 0; --s)
-      for (int k = mine.first; k < mine.last; ++k) m.backward(s, x, active, fill, mine.block(k));
+  m.reserve_memory();
+  each_share(x.rows(), [&](const LoadRange& mine) {
+    for (int s = m.n_supernodes() - 1; s >= 0; --s) m.backward(s, x, active, fill, mine);
   });
 }
 
 void SupernodalFactor::Impl::forward(int s, MatrixXd& x, std::span<const int> active, int tail,
                                      const LoadRange& mine) const {
-  const int ld = static_cast<int>(x.rows());
-  const Supernode node = supernode(s);
-  const LoadRange reached = reaching(active, node.first, mine);
+  const auto at = static_cast<std::size_t>(s);
+  const LoadRange reached = reaching(active, front.blocks().first[at], mine);
   if (reached.count == 0) return;
-  const LoadRange zero = reaching(active, node.last + tail - 1, mine);
+  const LoadRange zero = reaching(active, front.blocks().first[at + 1] + tail - 1, mine);
   const int count = reached.count - zero.count;
   if (count == 0) return;
   const int load = reached.first + (zero.first == reached.first ? zero.count : 0);
-  double* y = &x(load, node.first);
-  solve_triangle(node.block, node.width(), node.height, true, y, ld, count);
-  if (node.n_below == 0) return;
-  if (node.contiguous) {
-    push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 1,
-               &x(load, node.below[0]), ld);
-    return;
-  }
-  double* g = gather_buffer(mine);
-  push_below(node.rectangle(), node.n_below, node.width(), node.height, y, ld, count, 0, g, count);
-  for (int k = 0; k < node.n_below; ++k) {
-    double* __restrict to = &x(load, node.below[k]);
-    const double* __restrict from = g + static_cast<std::ptrdiff_t>(k) * count;
-    for (int l = 0; l < count; ++l) to[l] += from[l];
-  }
+  const LoadBlock b = block(s, x, load, count);
+  if (x.rows() > 1) return forward_loads(b);
+  double* y = gather(b);
+  forward_block(b.block, b.width, b.height, y);
+  for (int r = 0; r < b.height; ++r) *b.row(r) = y[r];
 }
 
 void SupernodalFactor::Impl::backward(int s, MatrixXd& x, std::span<const int> active,
                                       const Fill& fill, const LoadRange& mine) const {
-  const int ld = static_cast<int>(x.rows());
-  const Supernode node = supernode(s);
-  const auto [load, count] = reaching(active, node.first, mine);
+  const auto at = static_cast<std::size_t>(s);
+  const int first = front.blocks().first[at], last = front.blocks().first[at + 1];
+  const auto [load, count] = reaching(active, first, mine);
   const int end = mine.first + mine.count;
-  x.block(mine.first, node.first, load - mine.first, node.width()).setZero();
-  x.block(load + count, node.first, end - load - count, node.width()).setZero();
+  x.block(mine.first, first, load - mine.first, last - first).setZero();
+  x.block(load + count, first, end - load - count, last - first).setZero();
   if (count == 0) return;
-  if (fill) fill(node.first, node.last, load, count);
+  if (fill) fill_by_units(fill, first, last, {load, count});
   // Lᵀ is upper triangular: entries behind the active block that start as zero stay zero.
   for (int l = load; l < load + count; ++l) {
     const int kept = active[static_cast<std::size_t>(l)];
-    for (int k = kept; k < node.last; ++k) x(l, k) = 0;
+    for (int k = kept; k < last; ++k) x(l, k) = 0;
   }
-  double* y = &x(load, node.first);
-  if (node.n_below > 0) {
-    const double* below = &x(load, node.below[0]);
-    int below_ld = ld;
-    if (!node.contiguous) {
-      double* g = gather_buffer(mine);
-      for (int k = 0; k < node.n_below; ++k) {
-        const double* from = &x(load, node.below[k]);
-        std::copy(from, from + count, g + static_cast<std::ptrdiff_t>(k) * count);
-      }
-      below = g;
-      below_ld = count;
-    }
-    pull_below(node.rectangle(), node.n_below, node.width(), node.height, below, below_ld, count, y,
-               ld);
-  }
-  solve_triangle(node.block, node.width(), node.height, false, y, ld, count);
+  const LoadBlock b = block(s, x, load, count);
+  if (x.rows() > 1) return backward_loads(b);
+  double* y = gather(b);
+  backward_block(b.block, b.width, b.height, y);
+  for (int r = 0; r < b.width; ++r) *b.row(r) = y[r];
 }
 
 }  // namespace flexmorph::fem
