@@ -102,10 +102,6 @@ class Term {
   /// Returns the potential of the loads on one element [J].
   double potential_energy(int e, const Local& x) const { return energies(e, x).potential; }
 
-  /// Returns the power that the term dissipates in one element, which no energy contains [W]; it is
-  /// not negative.
-  virtual double dissipation(int, const Local&) const { return 0; }
-
   /// Returns the linear momentum of one element [kg m/s] (dim entries, the others are zero); zero
   /// where the term has none.
   virtual Vec3 momentum(int, const Local&) const { return Vec3::Zero(); }
@@ -184,6 +180,15 @@ class DesignedTerm {
   /// @param psi  (n_shapes x dim)
   virtual void add_scale_factor_gradient(int e, const Local& x, const LocalRows& psi,
                                          ScaleFactorGradient& out) const = 0;
+};
+
+/// Interface of a term that dissipates energy. Terms without this interface dissipate none.
+class DissipativeTerm {
+ public:
+  virtual ~DissipativeTerm() = default;
+  /// Returns the power that the term dissipates in one element, which no energy contains [W]; it is
+  /// not negative.
+  virtual double dissipation(int e, const Local& x) const = 0;
 };
 
 /// Interface of a term whose force is exactly the gradient of its strain energy U with respect to

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "fem/dynamics/mesh_changes/moving_root.h"
-#include "fem/solve/linear_solver.h"
 #include "fem/solve/scaled_constraints.h"
 #include "geometry/text.h"
 
@@ -20,8 +19,13 @@ namespace {
 /// The equations of balance_forces(). Unknowns are scaled to displacements, as in StepSolver.
 class Balance {
  public:
-  Balance(Workspace& model, State& x, double frequency)
-      : model_(model), x_(x), stiffness_(frequency * frequency), scales_(model.scales()) {}
+  Balance(Workspace& model, State& x, double frequency, DirectSolver& solver, SparseMatrix& matrix)
+      : model_(model),
+        x_(x),
+        stiffness_(frequency * frequency),
+        scales_(model.scales()),
+        kkt_(matrix),
+        solver_(solver) {}
 
   void solve() {
     constexpr int kMaxIterations = 20;
@@ -89,16 +93,23 @@ class Balance {
   double stiffness_;  // ω²
   VectorXd scales_, force_, right_, solution_;
   Constraints constraints_;
-  SparseMatrix kkt_;
-  DirectSolver solver_;
+  SparseMatrix& kkt_;
+  DirectSolver& solver_;
 };
 
 }  // namespace
 
-VectorXd balance_forces(Workspace& model, State& x, double frequency) {
+VectorXd balance_forces(Workspace& model, State& x, double frequency, DirectSolver& solver,
+                        SparseMatrix& matrix) {
   const VectorXd before = x.a;
-  Balance(model, x, frequency).solve();
+  Balance(model, x, frequency, solver, matrix).solve();
   return x.a - before;
+}
+
+VectorXd balance_forces(Workspace& model, State& x, double frequency) {
+  DirectSolver solver;
+  SparseMatrix matrix;
+  return balance_forces(model, x, frequency, solver, matrix);
 }
 
 }  // namespace flexmorph::fem

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fem/model/workspace.h"
+#include "fem/solve/linear_solver.h"
 
 namespace flexmorph::fem {
 
@@ -23,10 +24,16 @@ double separating_frequency(const Body& body);
 /// The function changes q, q̈ and λ of the state, but not q̇.
 ///
 /// @param frequency  Frequency ω, see separating_frequency() [rad/s].
+/// @param solver     Solver that analyses the pattern and keeps the last factorization.
+/// @param matrix     Becomes the matrix that the solver has factored.
 /// @returns ω² δ, the change of the accelerations (n_dofs).
 /// @throws Error (numerical) naming the time if Newton's method does not converge.
 ///
 /// Source: fem/README.md, Insertion and removal.
+VectorXd balance_forces(Workspace& model, State& x, double frequency, DirectSolver& solver,
+                        SparseMatrix& matrix);
+
+/// Calls balance_forces() with a solver of its own.
 VectorXd balance_forces(Workspace& model, State& x, double frequency);
 
 }  // namespace flexmorph::fem

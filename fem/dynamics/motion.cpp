@@ -348,7 +348,7 @@ class Run {
     const double line =
         change == MeshChange::insertion ? inserted_line(lines, growth.cell) : lines.line_m(1).value;
     MeshMap map = change_mesh(model_, *body, change, x_, growth.cell);
-    integrator_->change_mesh(map, before, balance_forces(model_, x_, separating_frequency(*body)));
+    integrator_->change_mesh(map, before, integrator_->balance(x_, separating_frequency(*body)));
     event.after = model_.energies(x_);
     event.momentum_after = momentum_in_space(model_, x_);
     event.tip_jump = (point_position(*body, x_, tip) - tip_before).norm();

@@ -9,6 +9,7 @@ BodyTerm::BodyTerm(std::unique_ptr<Term> t)
       designed(dynamic_cast<const DesignedTerm*>(term.get())),
       elastic(dynamic_cast<const ElasticEnergy*>(term.get())),
       flow(dynamic_cast<const FlowTerm*>(term.get())),
+      dissipative(dynamic_cast<const DissipativeTerm*>(term.get())),
       scaled(dynamic_cast<ScaledLoad*>(term.get())),
       load(dynamic_cast<LoadTerm*>(term.get())),
       strain(dynamic_cast<StrainTerm*>(term.get())),

@@ -41,6 +41,7 @@ struct BodyTerm {
   const DesignedTerm* designed;            ///< Derivatives by the scale factors.
   const ElasticEnergy* elastic;            ///< Derivatives of the strain energy.
   const FlowTerm* flow;                    ///< Power of material flow.
+  const DissipativeTerm* dissipative;      ///< Dissipated power.
   ScaledLoad* scaled;                      ///< Load factor.
   LoadTerm* load;                          ///< The term as a load.
   StrainTerm* strain;                      ///< The term as a term made of strains.

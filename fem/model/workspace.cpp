@@ -269,8 +269,10 @@ double Workspace::heat_power(const State& x) {
 
 double Workspace::dissipation(const State& x) {
   return summed(
-      x, [](const BodyTerm&) { return true; },
-      [](const BodyTerm& term, int e, const Local& local) { return term->dissipation(e, local); });
+      x, [](const BodyTerm& term) { return term.dissipative != nullptr; },
+      [](const BodyTerm& term, int e, const Local& local) {
+        return term.dissipative->dissipation(e, local);
+      });
 }
 
 double Workspace::load_power(const State& x) {

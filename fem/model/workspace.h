@@ -149,7 +149,7 @@ class Workspace : public Model {
   /// Returns the power that changes of temperature supply to the bodies, see
   /// HeatedTerm::heat_power() [W].
   double heat_power(const State& x);
-  /// Returns the dissipated power of all terms, see Term::dissipation() [W].
+  /// Returns the dissipated power of all terms, see DissipativeTerm::dissipation() [W].
   double dissipation(const State& x);
   /// Returns initial gradients by the scale factors, one per body: zeros for a designed body, empty
   /// vectors for other bodies.

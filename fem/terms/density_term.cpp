@@ -254,6 +254,7 @@ class Elastic final : public ElasticTerm {
 class Dissipative final : public StrainTerm,
                           public LinearMeanForce<Dissipative>,
                           public DesignedTerm,
+                          public DissipativeTerm,
                           public FlowTerm {
  public:
   Dissipative(std::string name, std::vector<DissipativePart> parts)

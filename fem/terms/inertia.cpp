@@ -61,7 +61,7 @@ class Inertia final : public Term,
 
   void add_tangent(int e, const Local& x, const Weights& w, LocalTangent& tangent) const override {
     const Matrices& m = matrices_[static_cast<size_t>(e)];
-    Square scalar = w.a * m.mass;
+    LocalSquare scalar = w.a * m.mass;
     if (m.flows) scalar += w.v * m.convection + w.q * m.transport;
     const auto d = x.q.cols();
     for (Eigen::Index k = 0; k < scalar.rows(); ++k)
@@ -110,14 +110,9 @@ class Inertia final : public Term,
   Energies energies(int e, const Local& x) const override {
     if (free_.has(e)) return {.kinetic = of_free_.kinetic_energy(free_.of(e), x)};
     const Matrices& m = matrices_[static_cast<size_t>(e)];
-    LocalRows product = m.mass.lazyProduct(x.v);
-    double twice = x.v.cwiseProduct(product).sum();
-    if (m.flows) {
-      product.noalias() = m.convection * x.q;
-      twice += x.v.cwiseProduct(product).sum();
-      product.noalias() = m.rate_product * x.q;
-      twice += x.q.cwiseProduct(product).sum();
-    }
+    double twice = bilinear_form(x.v, m.mass, x.v);
+    if (m.flows)
+      twice += bilinear_form(x.v, m.convection, x.q) + bilinear_form(x.q, m.rate_product, x.q);
     return {.kinetic = 0.5 * twice};
   }
 
@@ -151,9 +146,8 @@ class Inertia final : public Term,
   /// Returns ∫ ρh (Qᵀ Ṅ) · r̈ dA.
   double flow_power(int e, const Local& x) const override {
     const Matrices& m = matrices_[static_cast<size_t>(e)];
-    return 0.5 * x.a.cwiseProduct(m.convection * x.q).sum() +
-           2 * x.v.cwiseProduct(m.rate_product * x.q).sum() +
-           x.q.cwiseProduct(m.rate_transport * x.q).sum();
+    return 0.5 * bilinear_form(x.a, m.convection, x.q) +
+           2 * bilinear_form(x.v, m.rate_product, x.q) + bilinear_form(x.q, m.rate_transport, x.q);
   }
 
   void add_line_energy(std::span<const ShapeTable> line, const Local& x,
@@ -166,13 +160,16 @@ class Inertia final : public Term,
   }
 
  private:
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxShapes, kMaxShapes>;
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxShapes, 1>;
+  using LocalSquare =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxShapes, kMaxShapes>;
+  /// Matrices of an element, of its size: with room for kMaxShapes they would not fit into caches.
   struct Matrices {
     bool flows = false;
-    Square mass, convection, transport;
-    Column first, first_rate;             // ∫ρh N, ∫ρh Ṅ
-    Square rate_product, rate_transport;  // ∫ρh Ṅ Ṅᵀ, ∫ρh Ṅ N̈ᵀ
+    MatrixXd mass;
+    VectorXd first;  // ∫ρh N
+    // Only of elements whose lines move; rates are ∫ρh Ṅ, ∫ρh Ṅ Ṅᵀ, ∫ρh Ṅ N̈ᵀ.
+    MatrixXd convection, transport, rate_product, rate_transport;
+    VectorXd first_rate;
   };
 
   /// Matrices of eight elements, by columns; convection and transport only where lines of one of
@@ -180,6 +177,21 @@ class Inertia final : public Term,
   struct LaneMatrices {
     std::vector<Pack> mass, convection, transport;  // (n_shapes²)
   };
+
+  /// Returns Σ_kl x_k · A_kl y_l. For few shape functions it is several times as fast as products
+  /// of matrices of variable size.
+  static double bilinear_form(const LocalRows& x, const MatrixXd& A, const LocalRows& y) {
+    const Eigen::Index n = A.rows(), d = x.cols();
+    const double *px = x.data(), *py = y.data(), *entry = A.data();
+    double out = 0;
+    for (Eigen::Index l = 0; l < n; ++l, py += d)
+      for (Eigen::Index k = 0; k < n; ++k, ++entry) {
+        double dot = 0;
+        for (Eigen::Index c = 0; c < d; ++c) dot += px[d * k + c] * py[c];
+        out += *entry * dot;
+      }
+    return out;
+  }
 
   void side_by_side(int first, int last, LaneMatrices& out) const {
     const auto flows = [](const Matrices& m) { return m.flows; };

@@ -13,6 +13,7 @@ class Heated final : public StrainTerm,
                      public MeanForceTerm,
                      public EulerianLineTerm,
                      public FlowTerm,
+                     public DissipativeTerm,
                      public ScaledLoad,
                      public HeatedTerm {
  public:
@@ -95,7 +96,7 @@ class Heated final : public StrainTerm,
     return {.strain = energy_scale_ * cold_->strain_energy(e, shrunk(x))};
   }
   double dissipation(int e, const Local& x) const override {
-    return energy_scale_ * cold_->dissipation(e, shrunk(x));
+    return cold_.dissipative ? energy_scale_ * cold_.dissipative->dissipation(e, shrunk(x)) : 0;
   }
   double flow_power(int e, const Local& x) const override {
     return cold_.flow ? energy_scale_ * cold_.flow->flow_power(e, shrunk(x)) : 0;

@@ -102,6 +102,10 @@ class Integrator {
   /// and the variables of the scheme besides the state jump with them.
   virtual void cross_discontinuity(State& x) { make_consistent(x); }
 
+  /// Restores the balance of forces after a change of the mesh by balance_forces().
+  /// @returns the change of the accelerations (n_dofs)
+  virtual VectorXd balance(State& x, double frequency) = 0;
+
   /// Transfers the variables of the scheme besides the state across a change of the mesh, after
   /// `map` and balance_forces() have transferred the state.
   /// @param before  State before the change.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fem/dynamics/force_balance.h"
 #include "fem/dynamics/integrators/acceleration_solver.h"
 #include "fem/dynamics/integrators/coordinate_partition.h"
 #include "geometry/text.h"
@@ -350,6 +351,10 @@ void MinimalCoordinates::project_velocity(State& x) {
   VectorXd change, impulse;
   s.accelerations.solve(s.none, s.right, change, impulse);
   x.v += change;
+}
+
+VectorXd MinimalCoordinates::balance(State& x, double frequency) {
+  return balance_forces(impl_->model, x, frequency);
 }
 
 void MinimalCoordinates::advance(State& x, double t_end,

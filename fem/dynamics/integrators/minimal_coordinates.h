@@ -37,6 +37,7 @@ class MinimalCoordinates final : public Integrator {
   /// @throws Error (input) naming the bodies of unknowns without mass.
   void make_consistent(State& x) override;
   void project_velocity(State& x) override;
+  VectorXd balance(State& x, double frequency) override;
   /// Advances x in as many steps as the tolerance requires; each accepted state has q̈ and λ of its
   /// own time.
   /// @throws Error (numerical) also if a stiff model needs more than max_steps; the message gives

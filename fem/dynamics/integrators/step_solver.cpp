@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fem/dynamics/force_balance.h"
 #include "fem/solve/condition.h"
 #include "fem/solve/scaled_constraints.h"
 #include "geometry/text.h"
@@ -112,6 +113,13 @@ void StepSolver::project_velocity(State& x) {
   force_.setZero(model_.n_dofs());
   solve_mass(x, force_, constraint_);
   x.v += solution_.head(model_.n_dofs()).cwiseQuotient(scales_);
+}
+
+/// The matrix has the pattern of the tangent; therefore its analysis serves the next step, too.
+VectorXd StepSolver::balance(State& x, double frequency) {
+  factored_h_ = 0;
+  analysed_version_ = model_.pattern_version();
+  return balance_forces(model_, x, frequency, solver_, kkt_);
 }
 
 VectorXd StepSolver::held_part(const State& x, const VectorXd& w) {

@@ -17,6 +17,7 @@ class StepSolver : public Integrator {
  public:
   void make_consistent(State& x) final;
   void project_velocity(State& x) final;
+  VectorXd balance(State& x, double frequency) final;
   void advance(State& x, double t_end, const std::function<void(const State&)>& accepted) final;
   TriedStep try_step(State& x, double h, double allowed) final;
   const StepCounts& counts() const final { return counts_; }
