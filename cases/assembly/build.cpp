@@ -31,8 +31,8 @@ std::vector<fem::AttachedJoint> attached_joints(const Scene& scene, const std::s
 std::vector<fem::AttachedForce> applied_forces(const Scene& scene, const std::string& name,
                                                double t) {
   std::vector<fem::AttachedForce> out;
-  for (const BodyLoad& load : scene.loads)
-    if (load.body == name)
+  for (const size_t i : ordered_loads(scene))
+    if (const BodyLoad& load = scene.loads[i]; load.body == name)
       if (const auto force = attached_force(load, scene, t)) out.push_back(*force);
   return out;
 }

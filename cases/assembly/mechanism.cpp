@@ -82,8 +82,9 @@ void add_body(const Scene& scene, const Body& body, const std::array<int, 2>& co
   if (gravity.size() > 0) terms.push_back(fem::make_gravity(section, gravity));
   for (const fem::AttachedMass& m : attached_masses(scene, body.name))
     terms.push_back(fem::make_point_mass(m.mass, m.material, gravity));
-  for (const BodyLoad& load : scene.loads)
-    if (load.body == body.name) terms.push_back(load.row->make(load, body));
+  for (const size_t i : ordered_loads(scene))
+    if (const BodyLoad& load = scene.loads[i]; load.body == body.name)
+      terms.push_back(load.row->make(load, body));
   model.add_body(body.name, body.row->make(body, scene.time.end, count), section, std::move(terms));
 }
 

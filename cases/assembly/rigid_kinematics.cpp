@@ -90,7 +90,7 @@ fem::MechanismBody mechanism_body(const RigidBody& body) {
 
 std::vector<std::unique_ptr<fem::ForceElement>> rigid_loads(const Scene& scene) {
   std::vector<std::unique_ptr<fem::ForceElement>> out;
-  for (size_t i = 0; i < scene.loads.size(); ++i) {
+  for (const size_t i : ordered_loads(scene)) {
     const BodyLoad& load = scene.loads[i];
     const auto is_loaded = [&](const RigidBody& body) { return body.name == load.body; };
     if (std::any_of(scene.rigid_bodies.begin(), scene.rigid_bodies.end(), is_loaded))

@@ -149,7 +149,8 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
   if (by_stiffness.size() == 0)
     by_stiffness.setZero(factors.stiffness.size());  // the state was not solved
   if (r.value.d_held.size() > 0) by_stiffness += 2 * r.value.d_held;
-  VectorXd shown = r.loads.displacement(factors.stiffness, factors.mass, r.loads.n_loads() - 1);
+  VectorXd shown = r.loads.displacement(factors.stiffness, factors.mass,
+                                        r.loads.position(r.loads.n_loads() - 1));
   output_seconds_ += thread_seconds() - start;
   // All data are copied because a separate thread may write them during the next iteration.
   write_frame([this, names = FrameNames(scene_, r.problem.body, rows_), row = rows_,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "fem/dynamics/esl.h"
 #include "fem/force_element.h"
@@ -66,6 +67,11 @@ std::span<const LoadRow* const> load_rows();
 /// LoadRow::attached; nothing for loads that turn with the body.
 std::optional<fem::AttachedForce> attached_force(const BodyLoad& load, const Scene& scene,
                                                  double t);
+
+/// Returns the indices of all loads in an order that does not depend on their order in the case
+/// file. Forces are added in this order, because the last bits of a sum depend on the order of its
+/// terms. Loads that differ in their course over time only keep the order of the file.
+std::vector<size_t> ordered_loads(const Scene& scene);
 
 /// Reads the loads on moving bodies: [[load]].
 void read_loads(const io::Table& root, Scene& scene);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <tuple>
 
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/reading.h"
@@ -233,6 +235,19 @@ std::optional<fem::AttachedForce> attached_force(const BodyLoad& load, const Sce
   const Body& body = scene.body(load.body);
   if (!load.row->attached || load.turns) return {};
   return load.row->attached(load, load.law.at(t), body, body.longest(scene.time.end));
+}
+
+std::vector<size_t> ordered_loads(const Scene& scene) {
+  const auto key = [&](size_t i) {
+    const BodyLoad& l = scene.loads[i];
+    std::vector<double> numbers = {l.point.x(), l.point.y(), l.size, l.turns ? 1.0 : 0.0};
+    numbers.insert(numbers.end(), l.force.begin(), l.force.end());
+    return std::tuple(l.body, std::string(l.row->name), l.edge, std::move(numbers));
+  };
+  std::vector<size_t> out(scene.loads.size());
+  std::iota(out.begin(), out.end(), size_t{0});
+  std::ranges::stable_sort(out, {}, key);
+  return out;
 }
 
 void read_loads(const Table& root, Scene& scene) {

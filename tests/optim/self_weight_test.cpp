@@ -88,7 +88,7 @@ TEST(SelfWeight, TaylorRemaindersAreOfSecondOrder) {
   both.evaluate(k, m, at);
   ComplianceEvaluator::Each each;
   both.evaluate_each(k, m, each);
-  EXPECT_NEAR(1.5 * each.f[0] + 0.5 * each.f[1], at.f, 1e-12 * at.f);
+  EXPECT_NEAR(1.5 * each.f[both.position(0)] + 0.5 * each.f[both.position(1)], at.f, 1e-12 * at.f);
   const double slope = at.d_stiffness.dot(dk) + at.d_mass.dot(dm);
   const VectorXd slopes = each.d_stiffness * dk + each.d_mass * dm;
   Eigen::Vector3d before = Eigen::Vector3d::Zero();

@@ -177,7 +177,9 @@ BodyOutcome outcome_of(const Subproblem& p, const Design& design, const Formulat
   }
   const CellScaleFactors crisp = p.ersatz.crisp(out.crisp.fractions);
   const VectorXd each = p.loads.individual(crisp.stiffness, crisp.mass);
-  out.load_compliances.assign(each.data(), each.data() + each.size());
+  out.load_compliances.clear();
+  for (int l = 0; l < p.loads.n_loads(); ++l)  // in the order in which the loads were given
+    out.load_compliances.push_back(each[p.loads.position(l)]);
   out.worst_compliance = each.maxCoeff();
   if (condition) out.condition = p.loads.condition();
   // The comparison of the paper: uniform material with the allowed volume (or the crisp volume if

@@ -4,7 +4,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "geometry/cpu_time.h"
@@ -24,6 +26,31 @@ std::array<fem::HeldUnknown, 3> link_supports(const Grid& g, const std::array<in
                         ? 0
                         : 1;
   return {{{pins[0], 0}, {pins[0], 1}, {pins[1], 1 - along}}};
+}
+
+/// Returns the forces of a load by node and value: the last bits of a sum depend on its order.
+std::vector<fem::NodalForce> ordered_forces(const LoadCase& load) {
+  std::vector<fem::NodalForce> out = load.forces;
+  std::ranges::sort(out, {}, [](const fem::NodalForce& f) {
+    return std::tuple(f.node, f.force.x(), f.force.y());
+  });
+  return out;
+}
+
+/// Returns the indices of loads sorted by weight, heat and forces.
+std::vector<int> order_of(std::span<const LoadCase> loads) {
+  std::vector<std::vector<double>> numbers;
+  for (const LoadCase& load : loads) {
+    std::vector<double>& each = numbers.emplace_back();
+    each = {load.weight, load.thermal_stretch};
+    for (const fem::NodalForce& f : ordered_forces(load))
+      each.insert(each.end(), {static_cast<double>(f.node), f.force.x(), f.force.y()});
+  }
+  std::vector<int> out(loads.size());
+  std::iota(out.begin(), out.end(), 0);
+  std::ranges::stable_sort(
+      out, {}, [&](int l) -> const auto& { return numbers[static_cast<std::size_t>(l)]; });
+  return out;
 }
 
 fem::StaticSolver solver_of(const fem::EslSets& sets, const fem::PlaneSection& section,
@@ -58,6 +85,7 @@ struct ComplianceEvaluator::Impl : LoadSolver {
   // Free thermal expansion of each load (n x 2 n_nodes) [m]; empty when no load is thermal.
   MatrixXd free_growth;
   bool at_rest = false;
+  std::vector<int> positions;  // of the given loads among the sorted ones; empty: not sorted
   VectorXd energies, products;
   Seconds seconds;
 };
@@ -103,12 +131,16 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
   m.loads.fixed.setZero(n, m.solver.n_unknowns());
   m.weights.resize(n);
   VectorXd stretch(n);
+  const std::vector<int> order = order_of(loads);
+  m.positions.resize(loads.size());
   for (Eigen::Index l = 0; l < n; ++l) {
-    const LoadCase& load = loads[static_cast<std::size_t>(l)];
+    const int given = order[static_cast<std::size_t>(l)];
+    const LoadCase& load = loads[static_cast<std::size_t>(given)];
+    m.positions[static_cast<std::size_t>(given)] = static_cast<int>(l);
     check_load(load, plate.grid);
     m.weights(l) = load.weight;
     stretch(l) = load.thermal_stretch;
-    for (const fem::NodalForce& f : load.forces)
+    for (const fem::NodalForce& f : ordered_forces(load))
       for (int c = 0; c < 2; ++c)
         if (const int row = m.solver.row(f.node, c); row >= 0) m.loads.fixed(l, row) += f.force[c];
     if (m.loads.fixed.row(l).isZero(0) && stretch(l) == 0 && !m.weight)
@@ -120,7 +152,7 @@ ComplianceEvaluator::ComplianceEvaluator(const Plate& plate, std::span<const fem
     m.restrained = restrained_supports(m.solver, growth, stretch, m.weights);
     for (Eigen::Index l = 0; l < n && !m.restrained; ++l)
       if (m.loads.fixed.row(l).isZero(0))
-        refuse(loads[static_cast<std::size_t>(l)],
+        refuse(loads[static_cast<std::size_t>(order[static_cast<std::size_t>(l)])],
                "it consists of heat only, and the supports do not restrain the thermal expansion: "
                "there is no strain");
   }
@@ -262,6 +294,10 @@ VectorXd ComplianceEvaluator::displacement(const VectorXd& stiffness, const Vect
 }
 
 int ComplianceEvaluator::n_loads() const { return static_cast<int>(impl_->weights.size()); }
+
+int ComplianceEvaluator::position(int load) const {
+  return impl_->positions.empty() ? load : impl_->positions[static_cast<std::size_t>(load)];
+}
 
 int ComplianceEvaluator::n_right_hand_sides() const {
   return static_cast<int>(impl_->solved().size()) +

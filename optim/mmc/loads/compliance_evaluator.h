@@ -62,7 +62,9 @@ class ComplianceEvaluator {
   ComplianceEvaluator(const fem::EslSets& loads, const fem::PlaneSection& section,
                       const ComplianceSettings& settings, const VectorXd& stiffness0,
                       const VectorXd& mass0);
-  /// Creates the evaluator of a static plate with equal supports for all loads. A heated plate is
+  /// Creates the evaluator of a static plate with equal supports for all loads. The loads are
+  /// sorted by their values, so that results do not depend on the order in which they are given;
+  /// see position(). A heated plate is
   /// held at its positions in the cold state: supports prescribe the thermal expansion that a rigid
   /// motion cannot compensate, so that supports that permit the expansion cause no stress.
   /// @param held      displacements that are held at zero
@@ -137,6 +139,9 @@ class ComplianceEvaluator {
 
   /// Returns the number of loads.
   int n_loads() const;
+  /// Returns the index by which this class counts the load that was given as number `load`. Loads
+  /// of a motion keep their order.
+  int position(int load) const;
   /// Returns the number of right-hand sides that evaluate() solves, after compression.
   int n_right_hand_sides() const;
   /// Returns the number of factorizations since construction.

@@ -19,8 +19,8 @@ constexpr double kWeakestLink = 0.1;
 /// A design without such connections carries its loads nevertheless if its compliance is less than
 /// this multiple of that of uniform material. If it were refused, the optimizer could not proceed.
 constexpr double kMaxCompliance = 2;
-/// The variable that bounds an objective with one value per load: log z per unit of the variable,
-/// and the largest distance of the variable from its start.
+/// The variable that bounds an objective with one value per load, relative to the largest value of
+/// the start: its logarithm per unit of the variable, and the largest size of the variable.
 constexpr double kLogPerUnit = 10, kReachOfBound = 3;
 }  // namespace
 
@@ -44,7 +44,8 @@ MmcProblem::MmcProblem(const DesignedPlate& plate, const TdfSettings& tdf, Goal 
   if (!bounded()) return;
   solve(start_);
   start_.conservativeResize(start_.size() + 1);
-  start_[start_.size() - 1] = std::log(entries_.front().values.f.maxCoeff()) / kLogPerUnit;
+  bound_unit_ = entries_.front().values.f.maxCoeff();
+  start_[start_.size() - 1] = 0;
 }
 
 int MmcProblem::row_of(size_t limit) const {
@@ -176,10 +177,10 @@ VectorXd MmcProblem::pull_back_scale_factors(const CellScaleFactors& d_factors) 
 }
 
 /// Adds the constraints log f_l - bound <= 0 of a response with one value per load.
-void MmcProblem::add_each(const Entry& e, double bound, int first_row,
+void MmcProblem::add_each(const Entry& e, double unit, int first_row,
                           optim::ProblemValues& out) const {
   const Eigen::Index n = design_.n_variables(), m = e.values.f.size();
-  for (Eigen::Index l = 0; l < m; ++l) out.g[first_row + l] = std::log(e.values.f[l]) - bound;
+  for (Eigen::Index l = 0; l < m; ++l) out.g[first_row + l] = std::log(e.values.f[l] / unit);
   out.dg.block(first_row, 0, m, n) = e.values.f.cwiseInverse().asDiagonal() * e.slopes;
 }
 
@@ -188,7 +189,7 @@ void MmcProblem::add_limit(const Limit& limit, int first_row, optim::ProblemValu
   const Eigen::Index n = design_.n_variables();
   const VectorXd& f = e.values.f;
   if (limit.row->per_load) {
-    add_each(e, std::log(limit.value), first_row, out);
+    add_each(e, limit.value, first_row, out);
     if (e.crisp)
       out.g.segment(first_row, f.size()) = (e.crisp->array() / limit.value).log().matrix();
   } else if (limit.row->full) {
@@ -210,9 +211,11 @@ void MmcProblem::add_objective(optim::ProblemValues& out) const {
   if (bounded()) {
     const Eigen::Index n = design_.n_variables();
     const int first_row = row_of(goal_.limits.size());
-    out.f = kLogPerUnit * x_[n];
+    const double bound = kLogPerUnit * x_[n];
+    out.f = std::log(bound_unit_) + bound;
     out.df[n] = kLogPerUnit;
-    add_each(e, out.f, first_row, out);
+    add_each(e, bound_unit_, first_row, out);
+    out.g.segment(first_row, e.values.f.size()).array() -= bound;
     out.dg.col(n).segment(first_row, e.values.f.size()).setConstant(-kLogPerUnit);
     out.first_bound = first_row;
     out.n_bounds = e.values.f.size();

@@ -195,6 +195,7 @@ class MmcProblem final : public optim::Problem {
   ShapeLimits::Values outline_;
   double volume_ = 0, seconds_tdf_ = 0;
   bool solved_ = false, differentiated_ = false;
+  double bound_unit_ = 1;          // largest value of a bounded objective at the start [J]
   std::optional<double> uniform_;  // compliance of uniform material, computed at first use [J]
 };
 
