@@ -69,7 +69,8 @@ Basis basis_at(double u, const double* knot, int degree) {
 
 [[noreturn]] void refuse_times() {
   throw Error::input(
-      "no smooth function goes through the table: the distances between its times differ too much");
+      "no smooth function goes through the table: the distances between its times differ too much, "
+      "or its values are too large");
 }
 
 /// Returns the coefficients of the spline with given knots that has the given values at u.

@@ -55,7 +55,8 @@ TEST(Orders, ThatDisagreeAreNotCalledConverged) {
                                [](double h) { return 1 + h * h + 0.3 * std::sqrt(h); });
   const ExtrapolatedLimit limit = limit_of(values, Approach::power, {}, 1);
   EXPECT_FALSE(limit.converged);
-  EXPECT_NE(limit.sentence.find("disagree"), std::string::npos) << limit.sentence;
+  for (const char* order : {"1.46", "1.09"})
+    EXPECT_NE(limit.sentence.find(order), std::string::npos) << limit.sentence;
   EXPECT_EQ(limit.value, values.back().value);
   EXPECT_TRUE(limit.bounded());  // The differences between levels decrease.
   EXPECT_GE(limit.uncertainty, values[3].value - values[4].value);

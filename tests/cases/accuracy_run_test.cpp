@@ -9,6 +9,7 @@
 #include "cases/run/run.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -96,23 +97,27 @@ TEST(Accuracy, RefusesWhatItCannotMeasure) {
   const Scratch scratch;
   const std::string folder = scratch / "out";
   const std::string file = scratch.write("strip.toml", kStrip);
-  const auto fails = [&](const Words& more, const std::string& part) {
+  const auto fails = [&](const Words& more, const std::vector<std::string>& parts) {
     const Ended ended = accuracy(scratch, file, folder, more);
     EXPECT_EQ(ended.code, 2) << ended.out;
-    EXPECT_NE(ended.err.find(part), std::string::npos) << ended.err;
+    EXPECT_TRUE(testing::mentions_all(ended.err, parts));
     EXPECT_EQ(test::lines_of(ended.err).size(), 1U) << ended.err;
     EXPECT_FALSE(std::filesystem::exists(folder));
   };
-  fails({"--set", "accuracy="}, "strip.tip_uz");  // The message lists the quantities that exist.
-  fails({"--set", "accuracy.quantity=compliance"}, "strip.tip_uz");
-  fails({"--set", "accuracy.at=2"}, "after the end");
+  // The message lists the quantities that exist.
+  fails({"--set", "accuracy="}, {"strip.toml", "[accuracy]", "strip.tip_uz"});
+  fails({"--set", "accuracy.quantity=compliance"},
+        {"accuracy.quantity = \"compliance\"", "strip.tip_uz"});
+  fails({"--set", "accuracy.at=2"}, {"accuracy.quantity = \"strip.tip_uz\"", "at = 2", "end", "1"});
   fails({"--set", "accuracy.refinements=[\"mesh\"]"},
-        "accuracy.refinements: refinement series 'mesh'");
-  fails({"--set", "accuracy.reference={ value = 1, file = \"x.csv\", source = \"\" }"}, "either");
-  fails({"--refinements", "mesh"}, "elements");
-  fails({"--refinements", "step"}, "no motion");
-  fails({"--budget", "soon"}, "--budget soon");
-  fails({"--set", "accuracy.reference={ file = \"nowhere.csv\", source = \"\" }"}, "nowhere.csv");
+        {"strip.toml:", "accuracy.refinements", "'mesh'", "elements, shape"});
+  fails({"--set", "accuracy.reference={ value = 1, file = \"x.csv\", source = \"\" }"},
+        {"accuracy.reference: ", "`value`", "`file`"});
+  fails({"--refinements", "mesh"}, {"'mesh'", "elements, shape"});
+  fails({"--refinements", "step"}, {"accuracy: ", "step", "time"});
+  fails({"--budget", "soon"}, {"--budget soon: ", "120s"});
+  fails({"--set", "accuracy.reference={ file = \"nowhere.csv\", source = \"\" }"},
+        {"nowhere.csv: "});
 }
 
 // Evaluates the start design of the short beam; the quantity is the volume of the smoothed layout,

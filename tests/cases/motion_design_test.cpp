@@ -14,6 +14,7 @@
 #include "tests/cases/program.h"
 #include "tests/cases/run_json.h"
 #include "tests/support/differences.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::test {
 namespace {
@@ -227,14 +228,16 @@ TEST_P(EveryCorrection, LowersWhatTheMotionSays) {
   EXPECT_EQ(table.numbers("objective").size(), cycles.size());
   const io::CsvTable arrows = io::read_csv(folder + "/certificate.csv");
   EXPECT_GE(arrows.numbers("by_x").size(), 1u);
-  EXPECT_NE(contents_of(folder + "/certificate.svg").find("<svg"), std::string::npos);
-  EXPECT_NE(contents_of(folder + "/design_esl.svg").find("<svg"), std::string::npos);
+  // The report shows the certificate and, if corrected designs were kept, the designs before them.
   const std::string report = contents_of(folder + "/report.html");
-  EXPECT_NE(report.find("Corrected cycles"), std::string::npos);
-  EXPECT_NE(report.find("Optimality certificate"), std::string::npos);
-  EXPECT_EQ(report.find("The designs for the equivalent static loads are shown first") !=
-                std::string::npos,
-            run["corrected"]["kept"].get<bool>());
+  const auto shows = [&](const char* name) {
+    const std::string picture = contents_of(folder + "/" + name);
+    const size_t begin = picture.find("<svg");
+    EXPECT_NE(begin, std::string::npos) << name;
+    return begin != std::string::npos && report.find(picture.substr(begin)) != std::string::npos;
+  };
+  EXPECT_TRUE(shows("certificate.svg"));
+  EXPECT_EQ(shows("design_esl.svg"), run["corrected"]["kept"].get<bool>());
 }
 
 INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryCorrection, ::testing::Values("first_order", "direct"),
@@ -244,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(MotionDesign, EveryCorrection, ::testing::Values("first
 TEST(MotionDesign, OfTheWorstLoadLowersTheLargestEnergy) {
   const Scratch scratch;
   const json run = run_corrected(scratch, scratch / "out", "first_order", {"design.loads=worst"});
-  EXPECT_EQ(run["certificate"]["objective"], "largest strain energy in motion");
+  EXPECT_TRUE(testing::mentions_all(run["certificate"]["objective"], {"largest", "strain energy"}));
   const auto& cycles = run["corrected_cycles"];
   double least = cycles[0]["objective"];
   for (const auto& cycle : cycles)
@@ -270,7 +273,8 @@ TEST(Certify, RefusesWhatIsNoFinishedRun) {
   const Scratch scratch;
   const Ended ended = flexmorph(scratch, {"certify", scratch / "nowhere"});
   EXPECT_EQ(ended.code, 2);
-  EXPECT_NE(ended.err.find("is not the folder of a finished run"), std::string::npos) << ended.err;
+  EXPECT_TRUE(testing::mentions_all(
+      ended.err, {"'" + (scratch / "nowhere") + "'", "finished run", "case.toml"}));
 }
 
 TEST(CompareCycles, HasARowForEveryWay) {

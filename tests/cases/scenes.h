@@ -38,4 +38,14 @@ inline std::string complaint_of_v01(const Changes& changes) {
   return "";
 }
 
+/// Returns the location with which a message must begin: the change that it names, otherwise the
+/// file of the case.
+inline std::string location_in(const std::string& message, const std::string& file,
+                               const Changes& changes) {
+  for (const std::string& change : changes)
+    if (const std::string option = "--set " + change + ": "; message.starts_with(option))
+      return option;
+  return file + ":";
+}
+
 }  // namespace flexmorph::cases

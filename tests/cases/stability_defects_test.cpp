@@ -13,6 +13,7 @@
 #include "io/tables.h"
 #include "tests/cases/program.h"
 #include "tests/cases/run_json.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -136,7 +137,8 @@ TEST(Starts, AtTemperaturesThatJump) {
   ASSERT_EQ(ended.code, 0) << ended.err;
   // The energy that a jump of the temperature brings in is not a power. Therefore the energy
   // balance does not contain it, and the warning states this reason.
-  EXPECT_TRUE(contains(ended.err, "A temperature jump ('beam' at t = 0 s)")) << ended.err;
+  EXPECT_TRUE(testing::mentions_all(
+      ended.err, {"energy balance", "temperature", "'beam'", "t = 0 s", "body.heat.profile"}));
   EXPECT_GT(run_of(scratch)["motion"]["smallest_area_ratio"].get<double>(), 0.9);
   const std::vector<double> end =
       io::read_csv(scratch / "run" + "/motion.csv").numbers("beam.end_ux");
@@ -183,11 +185,9 @@ TEST(Warnings, OfEnergyThatIsMissed) {
   Words hit = lean, rest = lean;
   // The temperature rises within one step, which is two thirds of an axial period.
   hit.emplace_back("body.heat.duration=1e-3");
-  EXPECT_TRUE(
-      contains(warnings_of(scratch, "free_beam_heated", hit), "error of the energy balance"));
+  EXPECT_TRUE(contains(warnings_of(scratch, "free_beam_heated", hit), "energy balance"));
   rest.emplace_back("body.heat.rise=0");
-  EXPECT_FALSE(
-      contains(warnings_of(scratch, "free_beam_heated", rest), "error of the energy balance"));
+  EXPECT_FALSE(contains(warnings_of(scratch, "free_beam_heated", rest), "energy balance"));
 }
 
 TEST(Warnings, OfVolumesThatAreNotReached) {
@@ -196,11 +196,10 @@ TEST(Warnings, OfVolumesThatAreNotReached) {
                       "design.cell=0.05", "design.min_feature=0"};
   Words small = lean;
   small.emplace_back("design.max_volume=0.01");
-  EXPECT_TRUE(contains(warnings_of(scratch, "short_beam", small, test::kTooFew),
-                       "above the allowed value 0.01"));
+  EXPECT_TRUE(testing::mentions_all(warnings_of(scratch, "short_beam", small, test::kTooFew),
+                                    {"volume", "'beam'", "allowed value 0.01"}));
   small.back() = "design.max_volume=0.9";
-  EXPECT_FALSE(contains(warnings_of(scratch, "short_beam", small, test::kTooFew),
-                        "above the allowed value"));
+  EXPECT_FALSE(contains(warnings_of(scratch, "short_beam", small, test::kTooFew), "allowed value"));
 }
 
 // The drive keeps the crank at rest, therefore the velocity given by the case contradicts it.
@@ -209,10 +208,9 @@ TEST(Starts, AtSpeedsThatTheDriveDoesNotAllow) {
   const Ended ended = test::flexmorph(
       scratch, {"check", "four_bar", "--set", "rigid_body.crank.velocity=[100, -70]"});
   EXPECT_EQ(ended.code, 2);
-  EXPECT_TRUE(
-      contains(ended.err,
-               "rigid_body.crank.velocity = [100, -70]: this contradicts joint 'crank_on_ground'"))
-      << ended.err;
+  EXPECT_TRUE(testing::mentions_all(
+      ended.err,
+      {"four_bar.toml:", "rigid_body.crank.velocity = [100, -70]", "'crank_on_ground'"}));
 }
 
 // Such components would silently be moved into the domain and give another design than that of the
@@ -225,7 +223,8 @@ TEST(Starts, OutsideOfTheDomainAreRefused) {
   const Ended ended =
       test::flexmorph(scratch, {"check", "short_beam", "--set", "design.start='" + start + "'"});
   EXPECT_EQ(ended.code, 2);
-  EXPECT_TRUE(contains(ended.err, "the centre of component 2 lies in the domain, [0, 2] x [0, 1]"));
+  EXPECT_TRUE(testing::mentions_all(ended.err, {"component 2", "[0, 2] x [0, 1] [m]"},
+                                    "flexmorph: --set design.start='" + start + "': "));
 }
 
 }  // namespace

@@ -201,13 +201,14 @@ void expect_length_scale_violations(const json& run, const Plate& plate) {
   for (const bool solid : {true, false}) {
     const json& smallest = result[solid ? "min_feature" : "min_gap"];
     const double width = smallest.is_number() ? smallest.get<double>() : INFINITY;
-    const std::string words =
-        solid ? " narrower than 2 * design.min_thickness = " : " narrower than one cell, ";
     const double wanted = solid ? plate.thickness : plate.cell;
     double said = INFINITY;
-    for (const std::string warning : run["warnings"])
-      if (const std::size_t at = warning.find(words); at != std::string::npos)
+    for (const std::string warning : run["warnings"]) {
+      const std::size_t at = warning.find(" narrower ");
+      const bool of_material = warning.find("design.min_thickness") != std::string::npos;
+      if (at != std::string::npos && of_material == solid)
         said = std::stod(warning.substr(warning.find(": ", at) + 2));
+    }
     if (width < 0.95 * wanted) {
       EXPECT_NEAR(said, width, 0.02 * plate.cell) << run["warnings"];
     } else if (width >= wanted) {

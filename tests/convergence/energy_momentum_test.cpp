@@ -362,8 +362,7 @@ TEST(EnergyMomentum, SaysWhatItCannotDo) {
     EXPECT_EQ(error.kind(), Error::Kind::numerical);
     const std::string text = error.what();
     for (const char* part :
-         {"energy_momentum: Newton's method does not converge at t = 0 s, step 1",
-          "after 2 halvings", "1: |r|", "time.step"})
+         {"energy_momentum", "converge", "t = 0 s", "step 1", "2 halvings", "1: |r|", "time.step"})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
   EXPECT_EQ(x.q, q);  // the last good state

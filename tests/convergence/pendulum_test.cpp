@@ -137,8 +137,8 @@ TEST(StepHalving, RecoversAndReportsWhatItCannotDo) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::numerical);
     const std::string text = error.what();
-    EXPECT_NE(text.find("does not converge at t = 0 s"), std::string::npos) << text;
-    EXPECT_NE(text.find("1: |r|"), std::string::npos) << text;
+    for (const char* part : {"converge", "t = 0 s", "1: |r|"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
   }
   EXPECT_THROW(run(0.1, 1.2), Error);
 }

@@ -338,8 +338,8 @@ TEST(StaticPath, SaysWhereItFailed) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::numerical);
     const std::string text = error.what();
-    EXPECT_NE(text.find("load factor 0"), std::string::npos) << text;
-    EXPECT_NE(text.find("residuals of the last attempt are "), std::string::npos) << text;
+    for (const char* part : {"converge", "load factor 0", "residuals"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
   }
   EXPECT_EQ((x.q - model.reference().q).norm(), 0);  // the last equilibrium
   s.first_step = -1;

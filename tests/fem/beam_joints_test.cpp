@@ -171,7 +171,8 @@ TEST(BeamMarkers, ArePointsOfTheBeam) {
   const std::string text = testing::error_of(Error::Kind::input, [&] {
     pair.model.add_joint(make_revolute("off", {}, {"beam", {0.3, 0.06}}));
   });
-  EXPECT_TRUE(testing::mentions(text, "outside the beam")) << text;
+  for (const char* part : {"outside", "0.3", "0.06"})
+    EXPECT_TRUE(testing::mentions(text, part)) << text;
 }
 
 TEST(BeamHolds, FindNodesByTheirCoordinates) {
@@ -184,7 +185,8 @@ TEST(BeamHolds, FindNodesByTheirCoordinates) {
   const std::string text = testing::error_of(Error::Kind::input, [] {
     Pair(make_hold("held", "beam", {{HoldLocation::at({0.4, 0}), NodeVector::r, {1}, {}}}));
   });
-  EXPECT_TRUE(testing::mentions(text, "no node of body 'beam'")) << text;
+  for (const char* part : {"'held'", "node", "'beam'"})
+    EXPECT_TRUE(testing::mentions(text, part)) << text;
 }
 
 // A placed beam starts to move as a rigid body: every point has the position and velocity that the

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "tests/support/differences.h"
+#include "tests/support/errors.h"
 #include "tests/support/models.h"
 #include "tests/support/rigid_models.h"
 
@@ -318,28 +319,28 @@ TEST(BodyJoints, NameWhatTheyCannotUse) {
   const std::string names[] = {"plate", "sheet", "space", "one"};
   const BodyView views[] = {
       {&names[0], &plate, 0}, {&names[1], &sheet, 0}, {&names[2], &space, 0}, {&names[3], &one, 0}};
-  const auto refused = [&](const std::unique_ptr<Joint>& joint, const std::string& why) {
-    try {
-      joint->bind(views);
-      ADD_FAILURE() << "not refused: " << why;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), Error::Kind::input);
-      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-    }
+  const auto refused = [&](const std::unique_ptr<Joint>& joint,
+                           const std::vector<std::string>& parts) {
+    const std::string text = testing::error_of(Error::Kind::input, [&] { joint->bind(views); });
+    for (const std::string& part : parts)
+      EXPECT_TRUE(testing::mentions(text, part)) << part << ": " << text;
   };
-  refused(make_revolute("j", {.body = "arm"}, {.body = "one"}), "no body 'arm'");
-  refused(make_revolute("j", {}, {}), "both locations are on the ground");
-  refused(make_revolute("j", {.body = "one"}, {.body = "one", .point = {1, 0}}), "same rigid body");
-  refused(make_slider("j", {.body = "one"}, {.body = "plate"}), "has no axes");
-  refused(make_revolute("j", {.body = "plate", .along = length}, {}), "cannot move along an axis");
-  refused(make_revolute("j", {.body = "plate", .point = {0.5, 0}}, {}), "outside");
-  refused(make_revolute("j", {.body = "sheet", .point = {0.2, 0}}, {}), "material lines move");
-  refused(make_revolute("j", {.body = "space"}, {}), "in the plane");
-  refused(make_revolute("j", {.body = "one", .point = {NAN, 0}}, {}), "not finite");
-  refused(make_unit_axis("j", "plate"), "has no axes");
-  refused(make_edge_weld("j", "plate", "side_low", {.body = "one"}, WeldMode::edge), "across");
-  refused(make_edge_weld("j", "one", "root", {.body = "one"}, WeldMode::edge), "no edges");
-  refused(make_weld("j", "one", "root", {}, WeldMode::edge), "no edges");
+  refused(make_revolute("j", {.body = "arm"}, {.body = "one"}), {"'j'", "no body", "'arm'"});
+  refused(make_revolute("j", {}, {}), {"'j'", "ground"});
+  refused(make_revolute("j", {.body = "one"}, {.body = "one", .point = {1, 0}}),
+          {"'j'", "same", "'one'"});
+  refused(make_slider("j", {.body = "one"}, {.body = "plate"}), {"'j'", "'plate'", "axes"});
+  refused(make_revolute("j", {.body = "plate", .along = length}, {}), {"'j'", "'plate'", "axis"});
+  refused(make_revolute("j", {.body = "plate", .point = {0.5, 0}}, {}), {"0.5", "outside"});
+  refused(make_revolute("j", {.body = "sheet", .point = {0.2, 0}}, {}),
+          {"'j'", "'sheet'", "material lines"});
+  refused(make_revolute("j", {.body = "space"}, {}), {"'j'", "'space'", "plane"});
+  refused(make_revolute("j", {.body = "one", .point = {NAN, 0}}, {}), {"'j'", "finite"});
+  refused(make_unit_axis("j", "plate"), {"'j'", "'plate'", "axes"});
+  refused(make_edge_weld("j", "plate", "side_low", {.body = "one"}, WeldMode::edge),
+          {"'j'", "'side_low'", "across"});
+  refused(make_edge_weld("j", "one", "root", {.body = "one"}, WeldMode::edge), {"'root'", "edges"});
+  refused(make_weld("j", "one", "root", {}, WeldMode::edge), {"'root'", "edges"});
   EXPECT_THROW(make_angle_drive("j", {}, {.body = "one"}, {}), Error);
   EXPECT_THROW(make_point_drive("j", {.body = "one"}, {}, {}), Error);
   EXPECT_THROW(make_point_drive("j", {.body = "one"}, path, {2}), Error);

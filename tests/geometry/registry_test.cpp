@@ -25,7 +25,9 @@ TEST(Registry, FindsRowsByTheirNames) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_STREQ(error.what(), "the joint 'one' exists already");
+    const std::string text = error.what();
+    for (const char* part : {"joint", "'one'", "exists"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
   }
   EXPECT_THROW(rows.add(none), Error);
   EXPECT_EQ(rows.rows().size(), 2u);

@@ -109,17 +109,15 @@ TEST_F(CaseFiles, ListsOfLists) {
   EXPECT_TRUE(root.is_list_of_strings(quick("", "names")));
   for (const char* key : {"table", "mixed", "none"})
     EXPECT_FALSE(root.is_list_of_strings(quick("", key)));
-  const std::string location = "plate.toml:1:9: table = [[0, 1.5], [1, -2]]: a list: lists of ";
-  EXPECT_EQ(
-      error([](const Table& t) { t.rows(quick("", "table").rows(any_number("it"), 3)); }, {}, text),
-      location + "3 numbers; it is a finite number");
-  EXPECT_EQ(
-      error([](const Table& t) { t.rows(quick("", "table").rows(not_negative("it", "m"), 2)); }, {},
-            text),
-      location + "2 numbers; it is not negative [m]");
-  EXPECT_EQ(
-      error([](const Table& t) { t.rows(quick("", "mixed").rows(any_number("it"), 1)); }, {}, text),
-      "plate.toml:4:9: mixed = [1, \"b\"]: a list: lists of 1 numbers; it is a finite number");
+  const auto rows = [&](const char* key, const Quantity& each, int columns) {
+    return error([&](const Table& t) { t.rows(quick("", key).rows(each, columns)); }, {}, text);
+  };
+  const std::string location = "plate.toml:1:9: table = [[0, 1.5], [1, -2]]: ";
+  EXPECT_TRUE(says(rows("table", any_number("it"), 3), location, {"lists", "3", "it", "finite"}));
+  EXPECT_TRUE(says(rows("table", not_negative("it", "m"), 2), location,
+                   {"lists", "2", "it", "negative", "[m]"}));
+  EXPECT_TRUE(says(rows("mixed", any_number("it"), 1),
+                   "plate.toml:4:9: mixed = [1, \"b\"]: ", {"lists", "1", "it", "finite"}));
 }
 
 // Paths in a case are relative to its folder; paths of the command line are relative to the working
@@ -138,29 +136,33 @@ TEST_F(CaseFiles, RangeIsSaidWithUnit) {
     return [q](const Table& root) { plate(root).number(a_number("body", "thickness", q)); };
   };
   const std::string start = "plate.toml:9:13: body.plate.thickness = -0.002: ";
-  EXPECT_EQ(error(thickness(positive("a thickness", "m"))), start + "a thickness is positive [m]");
-  EXPECT_EQ(error(thickness(between("a share", "", 0, 1))), start + "a share lies between 0 and 1");
-  EXPECT_EQ(error(thickness({.noun = "it", .lower = 2, .lower_open = true})),
-            start + "it is above 2");
-  EXPECT_EQ(error(thickness({.noun = "it", .upper = -1})), start + "it is at most -1");
+  const auto refused = [&](const Quantity& q, const std::vector<std::string>& parts) {
+    return says(error(thickness(q)), start, parts);
+  };
+  EXPECT_TRUE(refused(positive("a thickness", "m"), {"a thickness", "positive", "[m]"}));
+  EXPECT_TRUE(refused(between("a share", "", 0, 1), {"a share", "0", "1"}));
+  EXPECT_TRUE(refused({.noun = "it", .lower = 2, .lower_open = true}, {"it", "above", "2"}));
+  EXPECT_TRUE(refused({.noun = "it", .upper = -1}, {"it", "at most", "-1"}));
 }
 
 TEST_F(CaseFiles, WrongTypesAreSaid) {
-  EXPECT_EQ(error([](const Table& root) { arm(root).number(kThickness.called("a size")); }),
-            "plate.toml:16:13: body.arm.thickness = \"thin\": a size is positive [m]; a number is "
-            "written without quotes");
-  EXPECT_EQ(error([](const Table& root) { arm(root).boolean(quick("body", "flag").boolean()); }),
-            "plate.toml:17:8: body.arm.flag = 1: true or false");
-  EXPECT_EQ(error([](const Table& root) {
-              root.table(kTime).integer(quick("time", "step").integer("a count", 1, 9));
-            }),
-            "plate.toml:5:8: time.step = 1e-3: a count is a whole number between 1 and 9");
-  EXPECT_EQ(error([](const Table& root) { root.table(a_table("title")); }),
-            "plate.toml:1:9: title = \"a plate\": [title] is a table");
-  EXPECT_EQ(error([](const Table& root) { root.tables(quick("", "time").tables_of()); }),
-            "plate.toml:3:1: [time]: a list of tables, each with the heading [[time]]");
-  EXPECT_EQ(error([](const Table& root) { plate(root).numbers(kAnyCounts.counted(3)); }),
-            "plate.toml:10:12: body.plate.elements = [10, 2]: a list of 3: a count is positive");
+  EXPECT_TRUE(says(error([](const Table& root) { arm(root).number(kThickness.called("a size")); }),
+                   "plate.toml:16:13: body.arm.thickness = \"thin\": ",
+                   {"a size", "positive", "[m]", "quotes"}));
+  EXPECT_TRUE(
+      says(error([](const Table& root) { arm(root).boolean(quick("body", "flag").boolean()); }),
+           "plate.toml:17:8: body.arm.flag = 1: ", {"true", "false"}));
+  EXPECT_TRUE(says(error([](const Table& root) {
+                     root.table(kTime).integer(quick("time", "step").integer("a count", 1, 9));
+                   }),
+                   "plate.toml:5:8: time.step = 1e-3: ", {"a count", "whole", "1", "9"}));
+  EXPECT_TRUE(says(error([](const Table& root) { root.table(a_table("title")); }),
+                   "plate.toml:1:9: title = \"a plate\": ", {"[title]", "table"}));
+  EXPECT_TRUE(says(error([](const Table& root) { root.tables(quick("", "time").tables_of()); }),
+                   "plate.toml:3:1: [time]: ", {"[[time]]"}));
+  EXPECT_TRUE(says(
+      error([](const Table& root) { plate(root).numbers(kAnyCounts.counted(3)); }),
+      "plate.toml:10:12: body.plate.elements = [10, 2]: ", {"list", "3", "a count", "positive"}));
   EXPECT_TRUE(starts(
       error([](const Table& root) { arm(root).string(quick("body", "when").text("a date")); }),
       "plate.toml:18:8: body.arm.when = 2020-01-01: "));
@@ -169,66 +171,67 @@ TEST_F(CaseFiles, WrongTypesAreSaid) {
 TEST_F(CaseFiles, NotANumberAndInfinityAreRefused) {
   for (const char* value : {"nan", "inf", "-inf", "+inf"}) {
     const std::string option = std::string("time.end=") + value;
-    EXPECT_EQ(error(
-                  [](const Table& root) {
-                    root.table(kTime).number(a_number("time", "end", any_number("it")));
-                  },
-                  {option}),
-              "--set " + option + ": it is a finite number");
+    EXPECT_TRUE(says(error(
+                         [](const Table& root) {
+                           root.table(kTime).number(a_number("time", "end", any_number("it")));
+                         },
+                         {option}),
+                     "--set " + option + ": ", {"it", "finite"}));
   }
 }
 
 TEST_F(CaseFiles, ChoicesListWhatIsAllowed) {
   const std::vector<std::string> terms = {"inertia", "membrane"};
-  EXPECT_EQ(
-      error([&](const Table& root) { root.choice(quick("", "title").name_of("a title"), terms); }),
-      "plate.toml:1:9: title = \"a plate\": a title is one of 'inertia', 'membrane'");
-  EXPECT_EQ(
-      error([&](const Table& root) { root.choice(quick("", "title").name_of("a term"), terms); },
-            {"title=inertai"}),
-      "--set title=inertai: a term is one of 'inertia', 'membrane', did you mean 'inertia'?");
-  EXPECT_EQ(
-      error([&](const Table& root) {
-        plate(root).choices(quick("body", "terms").names_of("a term"), terms);
-      }),
-      "plate.toml:11:9: body.plate.terms = [\"inertia\", \"inertia\"]: a list: a term is one of "
-      "'inertia', 'membrane', each name at most once");
+  const auto choose = [&](const Table& root) {
+    root.choice(quick("", "title").name_of("a title"), terms);
+  };
+  EXPECT_TRUE(says(error(choose), "plate.toml:1:9: title = \"a plate\": ",
+                   {"a title", "'inertia'", "'membrane'"}));
+  // The suggestion follows the words that are allowed.
+  EXPECT_TRUE(says(error(choose, {"title=inertai"}),
+                   "--set title=inertai: ", {"a title", "'inertia'", "'membrane'", "'inertia'"}));
+  EXPECT_TRUE(says(error([&](const Table& root) {
+                     plate(root).choices(quick("body", "terms").names_of("a term"), terms);
+                   }),
+                   "plate.toml:11:9: body.plate.terms = [\"inertia\", \"inertia\"]: ",
+                   {"a term", "'inertia'", "'membrane'", "once"}));
 }
 
 TEST_F(CaseFiles, MissingKeysAreNamed) {
-  EXPECT_EQ(error([](const Table& root) {
-              plate(root).number(a_number("body", "width", positive("a width", "m")));
-            }),
-            "plate.toml:7:1: body.plate.width is missing: a width is positive [m]");
-  EXPECT_EQ(error([](const Table& root) { root.table(kEsl); }),
-            "plate.toml:1:1: esl is missing: [esl] is a table");
+  EXPECT_TRUE(
+      says(error([](const Table& root) {
+             plate(root).number(a_number("body", "width", positive("a width", "m")));
+           }),
+           "plate.toml:7:1: ", {"body.plate.width", "missing", "a width", "positive", "[m]"}));
+  EXPECT_TRUE(says(error([](const Table& root) { root.table(kEsl); }),
+                   "plate.toml:1:1: ", {"esl", "missing", "[esl]", "table"}));
   // A misspelled key is reported instead of the missing one.
-  EXPECT_EQ(error([](const Table& root) {
-              root.table(kTime).number(a_number("time", "steps", positive("it")));
-            }),
-            "plate.toml:5:8: time.step = 1e-3: unknown key, did you mean 'steps'?");
+  EXPECT_TRUE(says(error([](const Table& root) {
+                     root.table(kTime).number(a_number("time", "steps", positive("it")));
+                   }),
+                   "plate.toml:5:8: time.step = 1e-3: ", {"unknown", "'steps'"}));
 }
 
 TEST_F(CaseFiles, UnknownKeysAreErrors) {
-  EXPECT_EQ(error([](const Table& root) {
-              touch_all(root);
-              root.table(kTime).number(a_number("time", "end", positive("it")));
-              root.table(kTime).has(quick("time", "stepp"));
-            }),
-            "plate.toml:5:8: time.step = 1e-3: unknown key, did you mean 'stepp'?");
-  EXPECT_EQ(error([](const Table& root) {
-              root.has(kTitle);
-              root.has(kBody);
-            }),
-            "plate.toml:3:1: [time]: unknown key; the keys allowed here are body, title");
+  EXPECT_TRUE(says(error([](const Table& root) {
+                     touch_all(root);
+                     root.table(kTime).number(a_number("time", "end", positive("it")));
+                     root.table(kTime).has(quick("time", "stepp"));
+                   }),
+                   "plate.toml:5:8: time.step = 1e-3: ", {"unknown", "'stepp'"}));
+  EXPECT_TRUE(says(error([](const Table& root) {
+                     root.has(kTitle);
+                     root.has(kBody);
+                   }),
+                   "plate.toml:3:1: [time]: ", {"unknown", "body", "title"}));
   EXPECT_EQ(error(touch_all), "");
   EXPECT_EQ(error(touch_all, {"foo=1"}), "");
-  EXPECT_EQ(error(
-                [](const Table& root) {
-                  for (auto k : {"title", "time", "body"}) root.has(quick("", k));
-                },
-                {"bdoy.x=1"}),
-            "--set bdoy.x=1: [bdoy]: unknown key, did you mean 'body'?");
+  EXPECT_TRUE(says(error(
+                       [](const Table& root) {
+                         for (auto k : {"title", "time", "body"}) root.has(quick("", k));
+                       },
+                       {"bdoy.x=1"}),
+                   "--set bdoy.x=1: [bdoy]: ", {"unknown", "'body'"}));
 }
 
 TEST_F(CaseFiles, UnknownKeysFillOneScreenAtMost) {
@@ -240,13 +243,14 @@ TEST_F(CaseFiles, UnknownKeysFillOneScreenAtMost) {
       },
       changes);
   EXPECT_EQ(std::count(words.begin(), words.end(), '\n'), 19);
-  EXPECT_TRUE(ends(words, "81 more errors are not listed")) << words;
+  EXPECT_TRUE(contains(words.substr(words.rfind('\n') + 1), "81")) << words;
 }
 
 // Columns count characters like editors do, not bytes.
 TEST_F(CaseFiles, ColumnsCountCharacters) {
   const auto read = [](const Table& root) { root.number(a_number("", "a", positive("it"))); };
-  EXPECT_EQ(error(read, {}, "\n  a = -1\n"), "plate.toml:2:7: a = -1: it is positive");
+  EXPECT_TRUE(
+      says(error(read, {}, "\n  a = -1\n"), "plate.toml:2:7: a = -1: ", {"it", "positive"}));
   EXPECT_TRUE(starts(error(read, {}, "b = { c = \"äöü\" }\na = \"ä\"\n"), "plate.toml:2:5: a"));
 }
 
@@ -275,7 +279,7 @@ TEST_F(CaseFiles, PathsAreFound) {
   EXPECT_EQ(file.where("time.end"), "--set time.end=2");
   EXPECT_EQ(file.where("time.rho_inf"), start + "3:1: [time]");
   file.root().table(kTime).number(a_number("time", "rho_inf", any_number("it")), 0.8);
-  EXPECT_EQ(file.where("time.rho_inf"), start + "3:1: time.rho_inf = 0.8 (not given)");
+  EXPECT_TRUE(says(file.where("time.rho_inf"), start + "3:1: time.rho_inf = 0.8 ", {"not given"}));
   EXPECT_EQ(file.where("verify.mesh"), start + "1:1");
   EXPECT_TRUE(file.gives("time.step"));
   EXPECT_FALSE(file.gives("time.rho_inf"));
@@ -286,17 +290,17 @@ TEST_F(CaseFiles, FilesThatAreNone) {
   try {
     CaseFile file(scratch_ / "absent.toml");
   } catch (const Error& e) {
-    EXPECT_TRUE(ends(e.what(), "absent.toml: no such file"));
+    EXPECT_TRUE(says(e.what(), scratch_ / "absent.toml: ", {"no such"}));
   }
   try {
     CaseFile file(scratch_ / "");
     FAIL();
   } catch (const Error& e) {
-    EXPECT_TRUE(contains(e.what(), "a directory"));
+    EXPECT_TRUE(says(e.what(), scratch_ / "", {"directory"}));
   }
-  EXPECT_TRUE(starts(error(touch_all, {}, "a = 1\nb = = 2\n"), "plate.toml:2:5: not TOML: "));
-  EXPECT_TRUE(starts(error(touch_all, {}, "a = 1\na = 2\n"), "plate.toml:2:5: not TOML: "));
-  EXPECT_TRUE(starts(error(touch_all, {}, "a = \"\xff\"\n"), "plate.toml:1:5: not TOML: "));
+  EXPECT_TRUE(says(error(touch_all, {}, "a = 1\nb = = 2\n"), "plate.toml:2:5: ", {"TOML"}));
+  EXPECT_TRUE(says(error(touch_all, {}, "a = 1\na = 2\n"), "plate.toml:2:5: ", {"TOML"}));
+  EXPECT_TRUE(says(error(touch_all, {}, "a = \"\xff\"\n"), "plate.toml:1:5: ", {"TOML"}));
   EXPECT_EQ(error(touch_all, {}, ""), "");
 }
 
@@ -319,24 +323,21 @@ TEST_F(CaseFiles, OverridesReachEveryLocation) {
 }
 
 TEST_F(CaseFiles, OverridesAreLocatedByTheirOption) {
-  EXPECT_EQ(error([](const Table& root) { plate(root).number(kThickness.called("it")); },
-                  {"body.plate.thickness=-1"}),
-            "--set body.plate.thickness=-1: it is positive [m]");
-  EXPECT_EQ(error(touch_all, {"body.thickness=1"}),
-            "--set body.thickness=1: body has 2 entries; write body.ENTRY.KEY, where ENTRY is one "
-            "of plate, arm");
-  EXPECT_EQ(error(touch_all, {"time.end"}),
-            "--set time.end: an override has the form KEY=VALUE, on one line");
-  EXPECT_EQ(error(touch_all, {"time.end.x=1"}),
-            "--set time.end.x=1: time.end is not a table and has no keys");
-  EXPECT_TRUE(contains(error(touch_all, {"a..b=1"}), "KEY is a path with dots"));
-  EXPECT_TRUE(starts(error(touch_all, {"a=1 2"}), "--set a=1 2: VALUE is not TOML"));
-  EXPECT_EQ(error(
-                [](const Table& root) {
-                  root.table(kVerify).integer(quick("verify", "mesh").integer("it", 1, 2));
-                },
-                {"verify.step=1"}),
-            "--set verify.step=1: verify.mesh is missing: it is a whole number between 1 and 2");
+  const auto set = [&](const std::string& option, const std::vector<std::string>& parts,
+                       const std::function<void(const Table&)>& read = touch_all) {
+    return says(error(read, {option}), "--set " + option + ": ", parts);
+  };
+  EXPECT_TRUE(set("body.plate.thickness=-1", {"it", "positive", "[m]"},
+                  [](const Table& root) { plate(root).number(kThickness.called("it")); }));
+  EXPECT_TRUE(set("body.thickness=1", {"body", "2", "plate", "arm"}));
+  EXPECT_TRUE(set("time.end", {"KEY=VALUE"}));
+  EXPECT_TRUE(set("time.end.x=1", {"time.end", "table"}));
+  EXPECT_TRUE(set("a..b=1", {"KEY", "dots"}));
+  EXPECT_TRUE(set("a=1 2", {"VALUE", "TOML"}));
+  EXPECT_TRUE(set("verify.step=1", {"verify.mesh", "missing", "it", "whole", "1", "2"},
+                  [](const Table& root) {
+                    root.table(kVerify).integer(quick("verify", "mesh").integer("it", 1, 2));
+                  }));
 }
 
 TEST_F(CaseFiles, OverridesWithoutAValueTakeKeysAway) {
@@ -374,9 +375,9 @@ TEST_F(CaseFiles, NumbersDoNotDependOnTheLocale) {
   EXPECT_EQ(file.root().number(a_number("", "c", any_number("it"))), 0.25);
   EXPECT_TRUE(contains(file.text(), "a = 1234.5\nb = 10000\nc = 0.25\n"));
   EXPECT_TRUE(
-      ends(error([](const Table& root) { root.integer(quick("", "a").integer("it", 1, 20000)); },
+      says(error([](const Table& root) { root.integer(quick("", "a").integer("it", 1, 20000)); },
                  {}, "\n\na = 1234.5\n"),
-           "whole number between 1 and 20000"));
+           "plate.toml:3:5: a = 1234.5: ", {"whole", "20000"}));
 }
 
 }  // namespace

@@ -27,16 +27,13 @@ std::string complaint(const std::string& text) {
 
 TEST(CaseLimits, OfKeysAndNesting) {
   const std::string start = "b = 1\nc = \"\"\"\n\n\"\"\"\n";  // the next line is the fifth
-  EXPECT_EQ(complaint(start + repeated("a.", 20'000) + "a = 1"),
-            "a.toml:5: a key or a number has at most 100 parts between dots");
-  EXPECT_EQ(complaint(start + "[" + repeated("a.", 20'000) + "a]"),
-            "a.toml:5: a key or a number has at most 100 parts between dots");
-  EXPECT_EQ(complaint(start + "x = " + repeated("[", 20'000)),
-            "a.toml:5: lists and tables are nested at most 100 levels deep");
-  EXPECT_EQ(complaint(start + "x = " + repeated("{a = ", 20'000)),
-            "a.toml:5: lists and tables are nested at most 100 levels deep");
-  EXPECT_EQ(complaint(start + repeated("a", 5000) + " = 1"),
-            "a.toml:5: a key has at most 2000 characters");
+  const std::string fifth = "a.toml:5: ";
+  for (const std::string& dotted :
+       {repeated("a.", 20'000) + "a = 1", "[" + repeated("a.", 20'000) + "a]"})
+    EXPECT_TRUE(says(complaint(start + dotted), fifth, {"key", "100", "dots"}));
+  for (const std::string& nested : {repeated("[", 20'000), repeated("{a = ", 20'000)})
+    EXPECT_TRUE(says(complaint(start + "x = " + nested), fifth, {"100", "nested"}));
+  EXPECT_TRUE(says(complaint(start + repeated("a", 5000) + " = 1"), fifth, {"key", "2000"}));
 }
 
 TEST(CaseLimits, LeaveStringsAndCommentsAlone) {

@@ -30,6 +30,19 @@ std::string complaint(const std::string& text, const Constants& constants = {}) 
   return "";
 }
 
+/// A formula, the character that its refusal names (0 if any), and parts of the message.
+struct Wrong {
+  std::string text;
+  int character;
+  std::vector<std::string> parts;
+};
+void expect_refusal(const Wrong& wrong) {
+  const std::string at = "character " + std::to_string(wrong.character) + ": ";
+  EXPECT_TRUE(says(complaint(wrong.text),
+                   "formula '" + wrong.text + "': " + (wrong.character > 0 ? at : ""),
+                   wrong.parts));
+}
+
 /// Returns the length of a bar that guides a platform, Sun et al. (2018), (36), (37): the bar is
 /// from (x0, 0) to a point at x_c from the middle of the platform.
 std::string bar_length(const std::string& x0, const std::string& x_c) {
@@ -303,54 +316,50 @@ TEST(Formula, CompositionsKeepTheirDerivatives) {
 TEST(Formula, IsReadInAnyLocale) {
   const CommaLocale comma;
   EXPECT_EQ(Formula("1234.5*t")(2).value, 2469);
-  EXPECT_EQ(complaint("t + 1,5"),
-            "formula 't + 1,5': character 6: the formula must end here or continue with an "
-            "operator, but \",\" follows");
+  expect_refusal({"t + 1,5", 6, {"operator", "\",\""}});
 }
 
 TEST(Formula, SaysWhatIsWrongAndWhere) {
-  const std::vector<std::pair<std::string, std::string>> wrong = {
-      {"", "formula '': character 1: "},
-      {"0.5 + 0.1*sin(2*pi*x)", "character 20: 'x' is unknown"},
-      {"sinn(t)", "character 1: there is no function 'sinn'"},
-      {"2*zeta(t)", "character 3: there is no function 'zeta'"},
-      {"1 + I*t", "character 5: 'I' is unknown"},
-      {"Pi*t", "character 1: 'Pi' is unknown"},
-      {"sin*t", "character 1: the function 'sin' needs its argument in parentheses"},
-      {"2*sqrt( )", "character 7: these parentheses are empty"},
-      {"sin(t, t)", "the function 'sin' cannot have 2 arguments"},
-      {"sin(t", "character 6: ')' is needed"},
-      {"t + ",
-       "character 5: a number, a name or '(' is needed here, but the end of the formula follows"},
-      {"2t", "character 2: the formula must end here"},
-      {"1 + t)", "character 6: the formula must end here"},
-      {"10^2 + t**2", "character 10: a number, a name or '(' is needed here, but \"*\" follows"},
-      {"t^2^3", "character 4: a^b^c needs parentheses"},
-      {"t^-2^3", "character 5: a^b^c needs parentheses"},
-      {"t^1e-3^2", "character 7: a^b^c needs parentheses"},
-      {"2*(1 + t^sin(t^2)^2)", "character 18: a^b^c needs parentheses"},
-      {"{t, 1}", "character 1: the character '{' is not allowed"},
-      {"2·t", "character 2: a formula contains no letters other than a to z"},
-      {"t < 1", "character 3: the character '<' is not allowed"},
-      {"1.2.3*t", "character 1: '1.2.3' is not a number"},
-      {"1e999*t", "character 1: '1e999' is not a number"},
-      {"1/0", "division by zero"},
-      {"0^t",
-       "it contains a division by zero, or a power of 0 whose exponent is not always positive"},
-      {"log(-1)", "not a real number"},
-      {"sqrt(t - 0.5)", "its value at t = 0 s is not a real number"},
-      {"1/(t - 0.5)", "its value at t = 0.5 s is infinite"},
-      {"t^1.5", "its acceleration at t = 0 s is infinite"},
-      {"exp(1000*t)", "is infinite"},
-      {"1/(t - 1/3)", "jumps at t = 0.333333 s"},
-      {"1/(t - 1/3)^2", "jumps at t = 0.333333 s"},
-      {"atan2(sin(7*t), cos(7*t))", "its value jumps at t = 0.448799 s"},
-      {"t*tan(2*t)", "jumps at t = 0.785398 s"},
-      {"9^(9^9)", "formula '9^(9^9)': "},
-      {std::string(200, '(') + "t" + std::string(200, ')'), "character 101: more than 100"},
-      {std::string(20'000, ' ') + "t", "at most 10000 characters"},
+  const std::vector<Wrong> wrong = {
+      {"", 1, {"'('", "end"}},
+      {"0.5 + 0.1*sin(2*pi*x)", 20, {"'x'", "unknown"}},
+      {"sinn(t)", 1, {"function", "'sinn'"}},
+      {"2*zeta(t)", 3, {"function", "'zeta'"}},
+      {"1 + I*t", 5, {"'I'", "unknown"}},
+      {"Pi*t", 1, {"'Pi'", "unknown"}},
+      {"sin*t", 1, {"'sin'", "parentheses"}},
+      {"2*sqrt( )", 7, {"parentheses", "empty"}},
+      {"sin(t, t)", 1, {"'sin'", "2 arguments"}},
+      {"sin(t", 6, {"')'", "end"}},
+      {"t + ", 5, {"'('", "end"}},
+      {"2t", 2, {"operator", "\"t\""}},
+      {"1 + t)", 6, {"operator", "\")\""}},
+      {"10^2 + t**2", 10, {"'('", "\"*\""}},
+      {"t^2^3", 4, {"a^b^c", "parentheses"}},
+      {"t^-2^3", 5, {"a^b^c", "parentheses"}},
+      {"t^1e-3^2", 7, {"a^b^c", "parentheses"}},
+      {"2*(1 + t^sin(t^2)^2)", 18, {"a^b^c", "parentheses"}},
+      {"{t, 1}", 1, {"'{'"}},
+      {"2·t", 2, {"letters"}},
+      {"t < 1", 3, {"'<'"}},
+      {"1.2.3*t", 1, {"'1.2.3'", "number"}},
+      {"1e999*t", 1, {"'1e999'", "number"}},
+      {"1/0", 0, {"division", "zero"}},
+      {"0^t", 0, {"power of 0", "exponent"}},
+      {"log(-1)", 0, {"real"}},
+      {"sqrt(t - 0.5)", 0, {"value", "t = 0 s", "real"}},
+      {"1/(t - 0.5)", 0, {"value", "t = 0.5 s", "infinite"}},
+      {"t^1.5", 0, {"acceleration", "t = 0 s", "infinite"}},
+      {"exp(1000*t)", 0, {"infinite"}},
+      {"1/(t - 1/3)", 0, {"jump", "t = 0.333333 s"}},
+      {"1/(t - 1/3)^2", 0, {"jump", "t = 0.333333 s"}},
+      {"atan2(sin(7*t), cos(7*t))", 0, {"value", "jump", "t = 0.448799 s"}},
+      {"t*tan(2*t)", 0, {"jump", "t = 0.785398 s"}},
+      {"9^(9^9)", 2, {"exponent", "1e6"}},
+      {std::string(200, '(') + "t" + std::string(200, ')'), 101, {"100", "parentheses"}},
   };
-  for (const auto& [text, words] : wrong) EXPECT_TRUE(contains(complaint(text), words)) << text;
+  for (const Wrong& each : wrong) expect_refusal(each);
+  EXPECT_TRUE(contains(complaint(std::string(20'000, ' ') + "t"), "10000"));
   // Fast, but smooth functions are accepted.
   for (const char* text : {"sqrt(t)*t^2", "sin(2000*t)", "tanh(1e4*(t - 1/3))",
                            "exp(-1e6*(t - 1/3)^2)", "1e-30*sin(t)", "1e8 + t^3", "abs(t - 1/3)^3",
@@ -360,26 +369,17 @@ TEST(Formula, SaysWhatIsWrongAndWhere) {
 
 // Formulas that would exhaust the stack, and powers beyond the range of doubles, are refused.
 TEST(Formula, RefusesWhatHasNoEnd) {
-  const std::vector<std::pair<std::string, std::string>> wrong = {
-      {std::string(8000, '-') + "t", "character 11: there are more than 10 signs in a row"},
-      {"t - + - + - + - + - + - + 1", "more than 10 signs in a row"},
-      {"((3)^(999999))^(999999)", "character 5: it contains a number that is too large"},
-      {"((2*t)^(1000))^(1000)", "its value at t = 0.501 s is infinite"},
-      {"(2*t + 2)^(999999)", "its value at t = 0 s is infinite"},
-      {"(t^2)^(999*999999)", "character 6: an exponent is at most 1e6"}};
-  for (const auto& [text, words] : wrong) EXPECT_TRUE(contains(complaint(text), words)) << text;
+  const std::vector<Wrong> wrong = {
+      {std::string(8000, '-') + "t", 11, {"10 signs"}},
+      {"t - + - + - + - + - + - + 1", 0, {"10 signs"}},
+      {"((3)^(999999))^(999999)", 5, {"number", "large"}},
+      {"((2*t)^(1000))^(1000)", 0, {"value", "t = 0.501 s", "infinite"}},
+      {"(2*t + 2)^(999999)", 0, {"value", "t = 0 s", "infinite"}},
+      {"(t^2)^(999*999999)", 6, {"exponent", "1e6"}}};
+  for (const Wrong& each : wrong) expect_refusal(each);
   EXPECT_EQ(Formula("1 - -t")(2).value, 3);
   EXPECT_EQ(Formula("(2*t)^10")(1).value, 1024);
   EXPECT_EQ(Formula("((3)^(4))^(5)*t")(1).value, std::pow(3.0, 20));
-}
-
-// A path starts from rest: in 1e-5 s it moves by less than the last digit of its position, and its
-// computed rate is round-off. A corner in such a short time must still be found.
-TEST(Formula, IsCheckedOverShortTimes) {
-  const Formula path("0.5*cos(pi - (-2*pi*(t - 1/2)^3 + 3/2*pi*t - pi/4))");
-  for (const double end : {1e-9, 1e-7, 1e-5, 1e-3, 1.0}) EXPECT_NO_THROW(path.check(end)) << end;
-  EXPECT_TRUE(Formula("abs(t - 1/300000)").first_jump(1e-5));
-  EXPECT_TRUE(Formula("1 + abs(t - 1/300000)").first_jump(1e-5));
 }
 
 TEST(Formula, ConstantsHaveNamesOfTheirOwn) {
@@ -387,10 +387,8 @@ TEST(Formula, ConstantsHaveNamesOfTheirOwn) {
     EXPECT_NE(Formula::refusal_of_name(name), "") << name;
   for (const char* name : {"a", "L1", "long_name", "e", "T"})
     EXPECT_EQ(Formula::refusal_of_name(name), "") << name;
-  EXPECT_TRUE(contains(complaint("t", {{"sin", 1}}),
-                       "constant 'sin': this name is reserved for a function"));
-  EXPECT_TRUE(contains(complaint("t", {{"a", std::nan("")}}),
-                       "constant 'a': its value is not a finite number"));
+  EXPECT_TRUE(says(complaint("t", {{"sin", 1}}), "constant 'sin': ", {"function"}));
+  EXPECT_TRUE(says(complaint("t", {{"a", std::nan("")}}), "constant 'a': ", {"finite"}));
   EXPECT_EQ(Formula("e*t", {{"e", 0.1}})(1).value, 0.1);  // exactly this double
 }
 

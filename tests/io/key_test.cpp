@@ -113,18 +113,23 @@ TEST_F(Keys, MessagesAreThoseOfTheDeclaration) {
   const auto time = [](const Key& key) {
     return [key](const Table& root) { root.table(kTime).number(key); };
   };
-  EXPECT_EQ(error(time(kStep), {"time.step=-1"}), "--set time.step=-1: a step is positive [s]");
+  const auto set = [&](const std::string& option, const std::function<void(const Table&)>& read,
+                       const std::vector<std::string>& parts) {
+    return says(error(read, {option}), "--set " + option + ": ", parts);
+  };
+  EXPECT_TRUE(set("time.step=-1", time(kStep), {"a step", "positive", "[s]"}));
+  EXPECT_TRUE(says(error(time(kEnd), {"time.end="}),
+                   scratch_ / "case.toml:", {"time.end", "missing", "an end", "positive", "[s]"}));
   EXPECT_TRUE(
-      ends(error(time(kEnd), {"time.end="}), "time.end is missing: an end is positive [s]"));
-  EXPECT_EQ(error(time(kEnd.within(0, 0.5)), {"time.end=1"}),
-            "--set time.end=1: an end lies between 0 and 0.5 (0 excluded) [s]");
-  EXPECT_EQ(error(time(kEnd.called("it").measured_in("min")), {"time.end=0"}),
-            "--set time.end=0: it is positive [min]");
-  EXPECT_EQ(error([](const Table& root) { root.table(kTime).choice(kMood); }, {"time.mood=wlid"}),
-            "--set time.mood=wlid: a mood is one of 'calm', 'wild', did you mean 'wild'?");
-  EXPECT_EQ(error([](const Table& root) { root.table(kTime).integers(kSize.counted(3)); },
-                  {"time.size=[1,2]"}),
-            "--set time.size=[1,2]: a list of 3: a size is a whole number between 1 and 9");
+      set("time.end=1", time(kEnd.within(0, 0.5)), {"an end", "0", "0.5", "0 excluded", "[s]"}));
+  EXPECT_TRUE(
+      set("time.end=0", time(kEnd.called("it").measured_in("min")), {"it", "positive", "[min]"}));
+  // The suggestion follows the words that are allowed.
+  EXPECT_TRUE(set("time.mood=wlid", [](const Table& root) { root.table(kTime).choice(kMood); },
+                  {"a mood", "'calm'", "'wild'", "'wild'"}));
+  EXPECT_TRUE(set("time.size=[1,2]",
+                  [](const Table& root) { root.table(kTime).integers(kSize.counted(3)); },
+                  {"list", "3", "a size", "whole", "1", "9"}));
 }
 
 TEST_F(Keys, AKeyIsReadWhereAndAsWhatItIsDeclared) {

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 
 #include "geometry/base.h"
@@ -25,6 +26,11 @@ std::string refusal_of(const std::string& path) {
     return error.what();
   }
   return "";
+}
+
+/// Asks for the refusal of a folder that is not empty and contains no run.
+::testing::AssertionResult refused_as_foreign(const std::string& path) {
+  return says(refusal_of(path), "", {"'" + path + "'", "not empty", "-o"});
 }
 
 void fill(const std::string& path, const std::string& text) {
@@ -75,7 +81,7 @@ TEST(OutputFolder, LeavesForeignFoldersAlone) {
   const Scratch scratch;
   fs::create_directories(scratch / "foreign");
   scratch.write("foreign/run.json", "{}");
-  EXPECT_NE(refusal_of(scratch / "foreign").find("it does not contain a run"), std::string::npos);
+  EXPECT_TRUE(refused_as_foreign(scratch / "foreign"));
   EXPECT_EQ(contents_of(scratch / "foreign/run.json"), "{}");
   EXPECT_FALSE(fs::exists(scratch / "foreign/.flexmorph"));
   fs::create_directories(scratch / "empty");
@@ -84,7 +90,7 @@ TEST(OutputFolder, LeavesForeignFoldersAlone) {
   fill(scratch / "run", "");
   fs::create_directories(scratch / "linked");
   fs::create_symlink(scratch / "run/.flexmorph", scratch / "linked/.flexmorph");
-  EXPECT_NE(refusal_of(scratch / "linked").find("it does not contain a run"), std::string::npos);
+  EXPECT_TRUE(refused_as_foreign(scratch / "linked"));
   scratch.write("file", "");
   EXPECT_NE(refusal_of(scratch / "file"), "");
   EXPECT_EQ(contents_of(scratch / "file"), "");
@@ -143,9 +149,11 @@ TEST(OutputFolder, IsFilledByOneProcess) {
   Filler filler(scratch / "run");
   ASSERT_TRUE(filler.begun());
   EXPECT_TRUE(is_being_filled(scratch / "run"));
-  const std::string words = refusal_of(scratch / "run");
-  EXPECT_NE(words.find("process " + std::to_string(filler.pid()) + " on '"), std::string::npos)
-      << words;
+  std::array<char, 256> machine{};
+  gethostname(machine.data(), machine.size() - 1);
+  EXPECT_TRUE(says(refusal_of(scratch / "run"), "",
+                   {"'" + (scratch / "run") + "'", "process " + std::to_string(filler.pid()),
+                    std::string("'") + machine.data() + "'", "-o"}));
   EXPECT_EQ(contents_of(scratch / "run/run.json"), "running");
   EXPECT_FALSE(fs::exists(scratch / "run.previous"));
   filler.end();

@@ -50,6 +50,21 @@ std::string contents_of(const std::string& path) {
   return ::testing::AssertionFailure() << "does not end with '" << end << "':\n" << text;
 }
 
+::testing::AssertionResult says(const std::string& message, const std::string& location,
+                                const std::vector<std::string>& parts) {
+  if (!message.starts_with(location)) return starts(message, location);
+  for (const std::string& part : parts) {
+    std::ptrdiff_t found = 0;
+    for (size_t at = location.size(); (at = message.find(part, at)) != std::string::npos;
+         at += part.size())
+      ++found;
+    if (found < std::count(parts.begin(), parts.end(), part))
+      return ::testing::AssertionFailure() << "'" << part << "' behind '" << location << "' in:\n"
+                                           << message;
+  }
+  return ::testing::AssertionSuccess();
+}
+
 namespace {
 
 struct Comma : std::numpunct<char> {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <locale>
 #include <string>
+#include <vector>
 
 namespace flexmorph {
 
@@ -32,6 +33,12 @@ std::string contents_of(const std::string& path);
 ::testing::AssertionResult contains(const std::string& text, const std::string& part);
 ::testing::AssertionResult starts(const std::string& text, const std::string& start);
 ::testing::AssertionResult ends(const std::string& text, const std::string& end);
+
+/// Asks for a message that starts with a location and contains all of the parts behind it, each at
+/// least as often as it is listed. The parts are keys, names, values and technical terms, because
+/// the wording of messages may change.
+::testing::AssertionResult says(const std::string& message, const std::string& location,
+                                const std::vector<std::string>& parts);
 
 /// Sets a locale with a decimal comma and points between thousands during its lifetime.
 class CommaLocale {

@@ -73,7 +73,9 @@ TEST_P(EveryGuard, NanObjectiveKeepsTheBestDesign) {
       });
   expect_best_kept(result, feasible);
   EXPECT_EQ(result.stop, Stop::stalled);
-  EXPECT_TRUE(contains(result.message, "the objective is not finite")) << result.message;
+  EXPECT_TRUE(contains(result.message, "objective") && contains(result.message, "finite") &&
+              !contains(result.message, "gradient"))
+      << result.message;
 }
 
 TEST_P(EveryGuard, NumericalErrorsKeepTheBestDesign) {
@@ -221,7 +223,7 @@ TEST_P(EveryGuard, KeepsToItsStateSolves) {
   settings.kkt_tolerance = 0;
   const Result result = make_optimizer(settings)->minimize(problem, {});
   EXPECT_EQ(result.stop, Stop::evaluation_limit) << result.message;
-  EXPECT_TRUE(contains(result.message, "9 state solves")) << result.message;
+  EXPECT_TRUE(contains(result.message, " 9 ")) << result.message;
   EXPECT_GE(result.evaluations, 9);
   EXPECT_LE(result.evaluations, 10);  // the problem may be set back to the result
   EXPECT_LE(problem.evaluations, 10);
@@ -255,7 +257,7 @@ TEST_P(EveryGuard, UnknownOptionsAreNamed) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
     EXPECT_TRUE(contains(error.what(), GetParam())) << error.what();
-    EXPECT_TRUE(contains(error.what(), "'rho_init' is unknown")) << error.what();
+    EXPECT_TRUE(contains(error.what(), "'rho_init'")) << error.what();
     const char* known =
         GetParam().ends_with("mma") && !GetParam().starts_with("nlopt") ? "asyinit" : "box";
     EXPECT_TRUE(contains(error.what(), known)) << error.what();
@@ -271,7 +273,7 @@ TEST(Table, UnknownOptimizersAreNamed) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_TRUE(contains(error.what(), "'simplex' is unknown")) << error.what();
+    EXPECT_TRUE(contains(error.what(), "'simplex'")) << error.what();
     for (const std::string& name : optimizer_names()) {
       EXPECT_TRUE(contains(error.what(), name)) << error.what();
     }
@@ -321,7 +323,7 @@ TEST(Mma, StopsWhenNothingChanges) {
   settings.rest.rows = 0;
   const Result result = make_optimizer(settings)->minimize(problem, {});
   EXPECT_EQ(result.stop, Stop::converged);
-  EXPECT_TRUE(contains(result.message, "three iterations")) << result.message;
+  EXPECT_TRUE(contains(result.message, " 1.0e-03")) << result.message;
 }
 
 // The logarithm of a compliance has a curvature of 4 or more along some variables. Asymptotes that
@@ -370,7 +372,7 @@ TEST(Mma, StopsWhereTheObjectiveRests) {
       return true;
     });
     EXPECT_EQ(result.stop, Stop::converged);
-    EXPECT_TRUE(contains(result.message, "over 6 iterations")) << result.message;
+    EXPECT_TRUE(contains(result.message, " 6 iterations")) << result.message;
     EXPECT_EQ(std::count(stagnates.begin(), stagnates.end(), true), 1);
     EXPECT_TRUE(stagnates.back());
     EXPECT_LE(result.violation, settings.feasibility);
@@ -391,7 +393,7 @@ TEST(Mma, SaysHowFarTheObjectiveWasFromRest) {
   settings.rest = {5, 0, 0};
   const Result result = make_optimizer(settings)->minimize(problem, {});
   EXPECT_EQ(result.stop, Stop::iteration_limit);
-  EXPECT_TRUE(contains(result.message, " over the last 5 iterations")) << result.message;
+  EXPECT_TRUE(contains(result.message, " 5 iterations")) << result.message;
 }
 
 }  // namespace

@@ -366,8 +366,8 @@ TEST(Compliance, RefusesWithTheReason) {
     return std::string();
   };
   const ComplianceSettings far_inertia{LoadDefinition::inertia, Support::far_end, true, 1e-10};
-  EXPECT_NE(message(good, far_inertia, ones).find("reaction"), std::string::npos);
-  EXPECT_NE(message({kGrid, {}}, {}, ones).find("there are no loads"), std::string::npos);
+  EXPECT_NE(message(good, far_inertia, ones).find("'inertia'"), std::string::npos);
+  EXPECT_NE(message({kGrid, {}}, {}, ones).find("no loads"), std::string::npos);
   EXPECT_EQ(message(good, {}, ones), "");
   fem::EslSets bad = good;
   bad.sets[1].root_column = kGrid.nx;

@@ -228,7 +228,8 @@ TEST(EslLoop, StopsWhenTheObserverSaysSo) {
   EXPECT_EQ(cycles, 1);
   ASSERT_EQ(outcome.size(), 1u);
   EXPECT_EQ(outcome[0].iterations, 5);
-  EXPECT_TRUE(outcome[0].stop.starts_with("interrupted after ")) << outcome[0].stop;
+  for (const char* part : {"interrupted", "5 iterations"})
+    EXPECT_NE(outcome[0].stop.find(part), std::string::npos) << outcome[0].stop;
   EXPECT_GT(outcome[0].crisp.compliance, 0);
 }
 

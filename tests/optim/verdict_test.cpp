@@ -131,12 +131,12 @@ TEST(Verdict, PlateauEndsASearchThatIsAskedTo) {
 }
 
 TEST(Verdict, SaysItsNumbers) {
-  EXPECT_EQ(text_of({Verdict::Kind::unfinished, 0.04, 0.021}),
-            "unfinished: the objective fell by 2.1 % over the last 20 iterations, KKT residual "
-            "4.0e-02");
-  EXPECT_EQ(text_of({Verdict::Kind::stagnated, 0.04, 0}),
-            "stagnated: the objective fell by less than 0.1 % over 30 iterations, KKT residual "
-            "4.0e-02");
+  const std::string unfinished = text_of({Verdict::Kind::unfinished, 0.04, 0.021});
+  for (const char* part : {"unfinished", " 2.1 %", " 20 iterations", "KKT", " 4.0e-02"})
+    EXPECT_NE(unfinished.find(part), std::string::npos) << part << ": " << unfinished;
+  const std::string stagnated = text_of({Verdict::Kind::stagnated, 0.04, 0});
+  for (const char* part : {"stagnated", " 0.1 %", " 30 iterations", "KKT", " 4.0e-02"})
+    EXPECT_NE(stagnated.find(part), std::string::npos) << part << ": " << stagnated;
 }
 
 }  // namespace

@@ -266,13 +266,14 @@ TEST(ThermalForce, RefusesWhatItDoesNotKnow) {
       model.add_force_element(std::make_unique<ThermalForce>("q", "arm", heat, 1));
     });
   };
-  EXPECT_TRUE(testing::mentions(
-      added(std::make_unique<AncfPlate>(3, testing::ShapeSet::h16, testing::uniform_lines(0, 1, 1),
-                                        testing::uniform_lines(0, 1, 1))),
-      "only available in the plane"));
-  EXPECT_TRUE(testing::mentions(
-      added(std::make_unique<AncfPlate>(testing::swinging_plate(testing::ShapeSet::h16))),
-      "lines that move"));
+  const std::string in_space = added(std::make_unique<AncfPlate>(
+      3, testing::ShapeSet::h16, testing::uniform_lines(0, 1, 1), testing::uniform_lines(0, 1, 1)));
+  for (const char* part : {"'q'", "plane", "'arm'", "three-dimensional"})
+    EXPECT_TRUE(testing::mentions(in_space, part)) << in_space;
+  const std::string moving =
+      added(std::make_unique<AncfPlate>(testing::swinging_plate(testing::ShapeSet::h16)));
+  EXPECT_TRUE(testing::mentions(moving, "material lines") && testing::mentions(moving, "move"))
+      << moving;
 }
 
 // The force must use the mass of the body: with scale factors and the model's mass matrix, it

@@ -97,8 +97,9 @@ TEST(Temperature, OnlyBendsCarryThermalForces) {
 }
 
 TEST(Temperature, RefusesNonsense) {
-  EXPECT_TRUE(mentions(error_of(Error::Kind::input, [] { profile_of("sudden"); }),
-                       "cosine, linear, quartic, quintic, step"));
+  const std::string unknown = error_of(Error::Kind::input, [] { profile_of("sudden"); });
+  for (const char* name : {"'sudden'", "cosine", "linear", "quartic", "quintic", "step"})
+    EXPECT_TRUE(mentions(unknown, name)) << unknown;
   EXPECT_TRUE(mentions(error_of(Error::Kind::input,
                                 [] {
                                   make_temperature({Profile::cosine, 1, 0, 0});

@@ -9,6 +9,7 @@
 #include "cases/scene/version.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -69,7 +70,7 @@ TEST_F(Checkpoints, AreRefusedWhereTheyEndTooSoon) {
     EXPECT_NE(refusal(), "") << n;
   }
   put(whole.substr(0, whole.size() - 1));
-  EXPECT_EQ(refusal(), "it is damaged");
+  EXPECT_TRUE(contains(refusal(), "damaged"));
 }
 
 TEST_F(Checkpoints, AreThoseOfOneVersion) {
@@ -78,20 +79,18 @@ TEST_F(Checkpoints, AreThoseOfOneVersion) {
   const size_t at = other.find(kVersion), end = other.find('\n');
   other.replace(at, end - at, "0.0.1");
   put(other);
-  std::string expected = "it was written by version 0.0.1, but the program has version ";
-  expected += kVersion;
-  EXPECT_EQ(refusal(), expected);
+  EXPECT_TRUE(testing::mentions_all(refusal(), {"0.0.1", kVersion}));
   put("flexmorph motion 0, " + whole.substr(whole.find(kVersion)));
-  EXPECT_EQ(refusal(), "it does not have the format of a checkpoint");
+  EXPECT_TRUE(contains(refusal(), "format"));
 }
 
 TEST_F(Checkpoints, AreThoseOfOneCaseAndDesign) {
-  EXPECT_EQ(refusal("another design"), "it belongs to another case or design");
+  EXPECT_TRUE(contains(refusal("another design"), "another case or design"));
   folder_.write_text("inputs/turn.csv", "0, 0\n");
-  EXPECT_EQ(refusal(), "it belongs to another case or design");
+  EXPECT_TRUE(contains(refusal(), "another case or design"));
   one().write(memory_, {});
   folder_.write_text("inputs/turn.csv", "0, 1\n");
-  EXPECT_EQ(refusal(), "it belongs to another case or design");
+  EXPECT_TRUE(contains(refusal(), "another case or design"));
 }
 
 TEST_F(Checkpoints, NeedTheirFrames) {
@@ -100,7 +99,7 @@ TEST_F(Checkpoints, NeedTheirFrames) {
   std::string why;
   EXPECT_EQ(one().read(why), memory_) << why;
   std::filesystem::remove(folder_.path() + "/motion/a.vtu");
-  EXPECT_EQ(refusal(), "the file motion/a.vtu is missing");
+  EXPECT_TRUE(contains(refusal(), "motion/a.vtu"));
 }
 
 }  // namespace

@@ -189,7 +189,7 @@ TEST(SecondIntegrator, MotionPlatformAfterInsertion) {
 TEST(SecondIntegrator, HeatedSliderCrank) {
   const Changes quick = {"body.heat.start=0.015", "body.heat.duration=0.08",
                          "body.heat.profile=quintic"};
-  expect_agreement(verify({"slider_crank_heated", quick, 0.1, 1000, 1e-8, From::after_start}),
+  expect_agreement(verify({"slider_crank_heated", quick, 0.1, 1000, 3e-9, From::after_start}),
                    1e-3);
 }
 

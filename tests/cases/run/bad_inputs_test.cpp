@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "tests/cases/program.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::test {
 namespace {
@@ -20,7 +21,7 @@ struct Tried {
   const char* name;
   std::string from, to;  ///< Text of the case and its replacement; empty: the case is unchanged.
   std::string location;  ///< ":line:column" after the file name; empty: no location.
-  std::string description;
+  std::vector<std::string> parts;   ///< Parts of the message after its location.
   Words words = {"check", "CASE"};  ///< CASE stands for the changed case, OUT for a run folder.
   int code = 2;
   size_t lines = 1;  ///< Number of lines of the message.
@@ -30,84 +31,129 @@ void PrintTo(const Tried& tried, std::ostream* out) { *out << tried.name; }
 const std::string kLatin = "title = \"Tr\xe4ger\"\n", kMark = "\xef\xbb\xbf";
 
 const Tried kTyped[] = {
-    {"misspelt_key", "thickness = 0.01", "thicknes = 0.01", ":19:12", "did you mean 'thickness'?"},
-    {"misspelt_table", "[optimizer]", "[optimiser]", ":57:1", "did you mean 'optimizer'?"},
-    {"misspelt_word", "\"weld\"", "\"wedl\"", ":30:8", "did you mean 'weld'?"},
-    {"misspelt_body", "body = \"plate\"\nat", "body = \"palte\"\nat", ":36:8",
-     "did you mean 'plate'?"},
-    {"capital", "[time]", "[Time]", ":5:1", "did you mean 'time'?"},
-    {"comma_for_point", "width = 0.1", "width = 0,1", ":18:10",
-     "in `width = 0,1`: a number has a decimal point, not a comma"},
-    {"unit_behind", "length = 0.5\nwidth", "length = 0.5 m\nwidth", ":17:14",
-     "in `length = 0.5 m`: a number is given in SI units, without the name of the unit"},
-    {"unit_in_quotes", "width = 0.1", "width = \"100 mm\"", ":18:9",
-     "a number is written without quotes"},
-    {"no_quotes", "name = \"mma\"", "name = mma", ":58:8",
-     "in `name = mma`: a text is written in quotes"},
-    {"open_quote", "\"mma\"", "\"mma", ":58:12", "a closing quote is missing"},
-    {"open_bracket", "[10, 2]", "[10, 2", ":25:1", "not TOML"},
-    {"key_twice", "width = 0.1", "width = 0.1\nwidth = 0.2", ":19:9", "not TOML"},
-    {"table_twice", "[esl]", "[time]\n[esl]", ":40:1", "not TOML"},
-    {"semicolon", "speed = 0.5", "speed = 0.5;", ":26:12", "a line must not end with a semicolon"},
-    {"colon", "end = 0.12", "end: 0.12", ":6:4",
-     "in `end: 0.12`: a key and its value are separated by '='"},
-    {"negative", "thickness = 0.01", "thickness = -0.01", ":19:13", "a thickness is positive [m]"},
-    {"zero_step", "step = 1e-3", "step = 0", ":7:8", "a time step is positive [s]"},
-    {"step_beyond_end", "step = 1e-3", "step = 1", ":7:8", "at most time.end [s]"},
-    {"not_a_number", "density = 2700.0", "density = nan", ":20:11", "a density is positive"},
-    {"infinite", "end = 0.12", "end = inf", ":6:7", "an end time is positive [s]"},
-    {"half_an_element", "[10, 2]", "[10.5, 2]", ":23:12", "a whole number"},
-    {"too_few", "[10, 2]", "[10]", ":23:12", "a list of 2"},
-    {"poisson_in_percent", "poisson_ratio = 0.3", "poisson_ratio = 30", ":22:17",
-     "lies between 0 and 0.5"},
-    {"volume_in_percent", "max_volume = 0.5", "max_volume = 50", ":47:14", "lies between 0 and 1"},
-    {"key_missing", "youngs_modulus = 1e8\n", "", ":13:1",
-     "body.youngs_modulus is missing: Young's modulus is positive [Pa]"},
+    {"misspelt_key",
+     "thickness = 0.01",
+     "thicknes = 0.01",
+     ":19:12",
+     {"body.thicknes = 0.01", "'thickness'"}},
+    {"misspelt_table", "[optimizer]", "[optimiser]", ":57:1", {"[optimiser]", "'optimizer'"}},
+    {"misspelt_word", "\"weld\"", "\"wedl\"", ":30:8", {"joint.type", "'weld'", "'weld'"}},
+    {"misspelt_body",
+     "body = \"plate\"\nat",
+     "body = \"palte\"\nat",
+     ":36:8",
+     {"point_mass.body", "'plate'", "'plate'"}},
+    {"capital", "[time]", "[Time]", ":5:1", {"[Time]", "'time'"}},
+    {"comma_for_point", "width = 0.1", "width = 0,1", ":18:10", {"`width = 0,1`", "comma"}},
+    {"unit_behind",
+     "length = 0.5\nwidth",
+     "length = 0.5 m\nwidth",
+     ":17:14",
+     {"`length = 0.5 m`", "unit"}},
+    {"unit_in_quotes",
+     "width = 0.1",
+     "width = \"100 mm\"",
+     ":18:9",
+     {"body.width = \"100 mm\"", "number", "quotes"}},
+    {"no_quotes", "name = \"mma\"", "name = mma", ":58:8", {"`name = mma`", "quotes"}},
+    {"open_quote", "\"mma\"", "\"mma", ":58:12", {"name =", "closing quote"}},
+    {"open_bracket", "[10, 2]", "[10, 2", ":25:1", {"TOML", "']'"}},
+    {"key_twice", "width = 0.1", "width = 0.1\nwidth = 0.2", ":19:9", {"TOML", "'width'"}},
+    {"table_twice", "[esl]", "[time]\n[esl]", ":40:1", {"TOML", "'time'"}},
+    {"semicolon", "speed = 0.5", "speed = 0.5;", ":26:12", {"`speed = 0.5;`", "semicolon"}},
+    {"colon", "end = 0.12", "end: 0.12", ":6:4", {"`end: 0.12`", "'='"}},
+    {"negative",
+     "thickness = 0.01",
+     "thickness = -0.01",
+     ":19:13",
+     {"body.thickness = -0.01", "positive", "[m]"}},
+    {"zero_step", "step = 1e-3", "step = 0", ":7:8", {"time.step = 0", "positive", "[s]"}},
+    {"step_beyond_end", "step = 1e-3", "step = 1", ":7:8", {"time.step = 1", "time.end", "[s]"}},
+    {"not_a_number",
+     "density = 2700.0",
+     "density = nan",
+     ":20:11",
+     {"body.density = nan", "positive"}},
+    {"infinite", "end = 0.12", "end = inf", ":6:7", {"time.end = inf", "positive", "[s]"}},
+    {"half_an_element",
+     "[10, 2]",
+     "[10.5, 2]",
+     ":23:12",
+     {"body.elements = [10.5, 2]", "whole number"}},
+    {"too_few", "[10, 2]", "[10]", ":23:12", {"body.elements = [10]", "list of 2"}},
+    {"poisson_in_percent",
+     "poisson_ratio = 0.3",
+     "poisson_ratio = 30",
+     ":22:17",
+     {"body.poisson_ratio = 30", "0.5"}},
+    {"volume_in_percent",
+     "max_volume = 0.5",
+     "max_volume = 50",
+     ":47:14",
+     {"design.max_volume = 50", "fraction", "1"}},
+    {"key_missing",
+     "youngs_modulus = 1e8\n",
+     "",
+     ":13:1",
+     {"body.youngs_modulus", "missing", "[Pa]"}},
     {"joint_missing",
-     "[[joint]]\ntype = \"weld\"\nbody = \"plate\"\nedge = \"root\"\nto = \"hub\"\n", "", ":13:1",
-     "needs a [[joint]] with edge = \"root\""},
-    {"steps_too_many", "step = 1e-3", "step = 1e-13", ":7:8", "1.2e+12 steps are needed"},
+     "[[joint]]\ntype = \"weld\"\nbody = \"plate\"\nedge = \"root\"\nto = \"hub\"\n",
+     "",
+     ":13:1",
+     {"body", "[[joint]]", "root"}},
+    {"steps_too_many", "step = 1e-3", "step = 1e-13", ":7:8", {"time.step = 1e-13", "1.2e+12"}},
     {"memory_too_small",
      "step = 1e-3",
      "step = 1e-10",
      ":7:8",
-     "of memory",
+     {"time.step = 1e-10", "memory"},
      {"run", "CASE", "-o", "OUT"}},
     {"three_mistakes",
      "length = 0.5\nwidth = 0.1\nthickness = 0.01\n",
      "length = -0.5\nwidth = \"0.1\"\nthicknes = 0.01\n",
      ":17:10",
-     "18:9: body.width = \"0.1\": a width is positive [m]; a number is written",
+     {"body.length = -0.5", "tried.toml:18:9: body.width = \"0.1\": ", "quotes",
+      "tried.toml:19:12: body.thicknes", "'thickness'"},
      {"check", "CASE"},
      2,
      3},
-    {"latin_letters", "title = \"Growing plate, short\"\n", kLatin, ":3:11",
-     "a case is UTF-8 text"},
-    {"empty_file", "*", "", ":1:1", "time is missing: [time] is a table"},
-    {"not_toml_at_all", "*", "<?xml version=\"1.0\"?>\n<case/>\n", ":1:1", "not TOML"},
-    {"binary", "*",
+    {"latin_letters", "title = \"Growing plate, short\"\n", kLatin, ":3:11", {"TOML", "UTF-8"}},
+    {"empty_file", "*", "", ":1:1", {"time", "missing", "[time]"}},
+    {"not_toml_at_all", "*", "<?xml version=\"1.0\"?>\n<case/>\n", ":1:1", {"TOML", "'<'"}},
+    {"binary",
+     "*",
      std::string("\x7f"
                  "ELF\0\0\1",
                  7),
-     ":1:1", "not TOML"},
-    {"windows_marks", "*", kMark + "[time]\r\nend = -1\r\n", ":2:7", "an end time is positive [s]"},
-    {"no_such_case", "", "", "", "did you mean 'short_beam'?", {"check", "shortbeam"}},
-    {"a_folder", "", "", "", ".: this is a directory; a case is one TOML file", {"check", "."}},
-    {"no_command", "", "", "", "is a case, not a command; use: flexmorph run", {"CASE"}},
+     ":1:1",
+     {"TOML"}},
+    {"windows_marks",
+     "*",
+     kMark + "[time]\r\nend = -1\r\n",
+     ":2:7",
+     {"time.end = -1", "positive", "[s]"}},
+    {"no_such_case", "", "", "", {"'shortbeam'", "'short_beam'"}, {"check", "shortbeam"}},
+    {"a_folder", "", "", "", {".: ", "directory", "TOML"}, {"check", "."}},
+    {"no_command", "", "", "", {"tried.toml'", "case", "flexmorph run"}, {"CASE"}},
     {"set_without_value",
      "",
      "",
      "",
-     "--set time.end: an override has the form KEY=VALUE",
+     {"--set time.end: ", "KEY=VALUE"},
      {"check", "CASE", "--set", "time.end"}},
     {"set_of_a_wrong_key",
      "",
      "",
      "",
-     "--set body.thicknes=0.1: unknown key, did you mean",
+     {"--set body.thicknes=0.1: ", "'thickness'"},
      {"check", "CASE", "--set", "body.thicknes=0.1"}},
-    {"run_folder_is_a_file", "", "", "", "output folder", {"run", "CASE", "-o", "CASE"}},
-    {"wrong_threads", "", "", "", "--threads", {"run", "CASE", "-o", "OUT", "--threads", "0"}},
+    {"run_folder_is_a_file", "", "", "", {"folder", "tried.toml"}, {"run", "CASE", "-o", "CASE"}},
+    {"wrong_threads",
+     "",
+     "",
+     "",
+     {"--threads", "1 to 256"},
+     {"run", "CASE", "-o", "OUT", "--threads", "0"}},
 };
 static_assert(std::size(kTyped) >= 40);
 
@@ -132,10 +178,9 @@ TEST_P(Forty, SaysWhereAndWhat) {
   const Ended ended = flexmorph(scratch, words);
   EXPECT_EQ(ended.code, tried.code) << ended.err;
   EXPECT_EQ(ended.out, "");
-  EXPECT_TRUE(contains(ended.err, tried.description));
-  if (!tried.from.empty()) {
-    EXPECT_TRUE(starts(ended.err, "flexmorph: " + file + tried.location + ": "));
-  }
+  EXPECT_TRUE(testing::mentions_all(
+      ended.err, tried.parts,
+      tried.from.empty() ? "" : "flexmorph: " + file + tried.location + ": "));
   EXPECT_EQ(contents_of(file), text);  // files of the user are not changed
   EXPECT_FALSE(fs::exists(out));
   // For arguments on the command line CLI11 adds lines of its own.
@@ -164,7 +209,8 @@ TEST(Pipes, AreFilesWithoutAName) {
   EXPECT_EQ(ended("printf '[time]\\nend = -1\\n' | " + program + " check -"), 2);
   EXPECT_TRUE(starts(contents_of(err), "flexmorph: /dev/stdin:2:7: time.end = -1: "));
   EXPECT_EQ(ended("printf '' | " + program + " check -"), 2);
-  EXPECT_TRUE(contains(contents_of(err), "/dev/stdin:1:1: time is missing"));
+  EXPECT_TRUE(
+      testing::mentions_all(contents_of(err), {"time", "missing"}, "flexmorph: /dev/stdin:1:1: "));
 }
 
 // At most twenty lines are printed, in the order of the file.
@@ -179,7 +225,7 @@ TEST(ManyMistakes, FillOneScreenAtMost) {
   ASSERT_EQ(lines.size(), 20u);
   EXPECT_TRUE(contains(lines[0], "many.toml:2:7: time.end = -1"));
   EXPECT_TRUE(contains(lines[1], "many.toml:3:1: body.b0."));
-  EXPECT_TRUE(contains(lines[19], "more errors"));
+  EXPECT_TRUE(testing::mentions_all(lines[19], {"many.toml: ", "errors"}));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "tests/cases/program.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::test {
 namespace {
@@ -26,23 +27,23 @@ TEST(CommandLine, SaysWhatWasProbablyMeant) {
   const Scratch scratch;
   struct Meant {
     Words words;
-    std::string answer;
+    std::vector<std::string> parts;
   };
-  for (const Meant& each : std::vector<Meant>{
-           {{"chek", "short_beam"}, "'chek' is not a command, did you mean 'check'?"},
-           {{"short_beam"}, "'short_beam' is a case, not a command; use: flexmorph run short_beam"},
-           {{"run", "shortbeam"}, "nor a shipped case, did you mean 'short_beam'?"},
-           {{"run", "four-bar.toml"}, "nor a shipped case, did you mean 'four_bar'?"},
-           {{"check", "."}, ".: this is a directory; a case is one TOML file"},
-           {{"keys", "boddy"}, "did you mean 'body'?"}}) {
+  for (const Meant& each :
+       std::vector<Meant>{{{"chek", "short_beam"}, {"'chek'", "command", "'check'"}},
+                          {{"short_beam"}, {"'short_beam'", "case", "flexmorph run short_beam"}},
+                          {{"run", "shortbeam"}, {"'shortbeam'", "case", "'short_beam'"}},
+                          {{"run", "four-bar.toml"}, {"'four-bar.toml'", "case", "'four_bar'"}},
+                          {{"check", "."}, {".: ", "directory", "TOML"}},
+                          {{"keys", "boddy"}, {"'boddy'", "'body'"}}}) {
     const Ended ended = flexmorph(scratch, each.words);
     EXPECT_EQ(ended.code, 2) << each.words[0];
     EXPECT_EQ(lines_of(ended.err).size(), 1u) << ended.err;
-    EXPECT_TRUE(contains(ended.err, each.answer)) << ended.err;
+    EXPECT_TRUE(testing::mentions_all(ended.err, each.parts));
   }
   const Ended help = flexmorph(scratch, {"help"});
   EXPECT_EQ(help.code, 0);
-  EXPECT_TRUE(contains(help.out, "runs a case and writes its run folder")) << help.out;
+  EXPECT_TRUE(testing::mentions_all(help.out, {"run", "check", "verify", "--version"}));
 }
 
 // A case may be read from a pipe. If the output cannot be written, the exit code is 2.
@@ -55,7 +56,7 @@ TEST(CommandLine, ReadsStandardInputAndMissesAFullDisk) {
   EXPECT_TRUE(contains(contents_of(out), "\nactive\n"));
   const std::string err = scratch / "err";
   EXPECT_EQ(testing::run_shell(program + ">/dev/full 2>'" + err + "'").code, 2);
-  EXPECT_TRUE(contains(contents_of(err), "the output cannot be written")) << contents_of(err);
+  EXPECT_TRUE(testing::mentions_all(contents_of(err), {"output", "No space left on device"}));
 }
 
 // Files of components are found next to the case that names them; files named by --set are found in
@@ -72,7 +73,8 @@ TEST(CommandLine, FindsFilesBesideTheCase) {
   const Ended elsewhere =
       flexmorph(scratch, {"check", beside, "--set", "design.start=\"start.csv\""});
   EXPECT_EQ(elsewhere.code, 2);
-  EXPECT_TRUE(contains(elsewhere.err, "start.csv: cannot be read")) << elsewhere.err;
+  EXPECT_TRUE(testing::mentions_all(elsewhere.err, {"start.csv"},
+                                    "flexmorph: --set design.start=\"start.csv\": "));
 }
 
 TEST(CommandLine, ListsTheShippedCases) {
@@ -104,9 +106,8 @@ TEST(CommandLine, CheckSaysWhatIsThereAndWhatIsNot) {
     return std::pair(out.substr(0, middle), out.substr(middle));
   };
   const auto [active, absent] = halves({});
-  for (const char* part :
-       {" s, step ", "body plate", "24 components, 168 variables", "112 x 20 cells", "12 loads",
-        "unknowns", "MB", "mma", "terms: inertia, membrane", "million per step: forces"})
+  for (const char* part : {" s, step ", "body plate", "24 components", "168 variables", "112 x 20",
+                           "12 loads", "unknowns", "MB", "mma", "inertia, membrane", "forces"})
     EXPECT_TRUE(contains(active, part));
   for (const char* part : {"gravity", "heat", "out-of-plane", "rigid bodies", "verification",
                            "free material lines", "adaptive steps", "observed points", "loads"})

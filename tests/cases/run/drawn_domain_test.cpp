@@ -10,6 +10,7 @@
 #include "geometry/parts/outline_curves.h"
 #include "optim/mmc/cycles/design_verification.h"
 #include "tests/cases/program.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::test {
 namespace {
@@ -192,15 +193,17 @@ TEST_F(Plates, RefuseDrawingsThatAreNone) {
   const std::string crossing = said(drawn("bad.dxf", dxf(circle(0, 0, 10))));
   EXPECT_TRUE(contains(crossing, "bad.dxf.toml:6"));
   EXPECT_TRUE(contains(crossing, "domain.outline = "));
-  EXPECT_TRUE(contains(crossing, "bad.dxf: an outline is one outer ring with separate holes"));
+  EXPECT_TRUE(contains(crossing, "bad.dxf: "));
+  EXPECT_TRUE(contains(crossing, "holes"));
   const std::string both =
       scratch.write("both.toml", kShape + "outline = \"a.dxf\"\nsize = [1.0, 1.0]\n" + kRest);
-  EXPECT_TRUE(contains(said(both), "a domain needs exactly one of `size`"));
+  EXPECT_TRUE(testing::mentions_all(said(both),
+                                    {"both.toml:", "domain", "`size`", "`polygon`", "`outline`"}));
   const std::string lost =
       scratch.write("lost.toml", kShape + "size = [0.08, 0.05]\nunit = \"mm\"\n" + kRest);
-  EXPECT_TRUE(contains(said(lost), "this key needs an `outline`"));
+  EXPECT_TRUE(testing::mentions_all(said(lost), {"lost.toml:", "domain.unit", "`outline`"}));
   const std::string unit = drawn("no_unit.svg", "<svg><circle r='3'/></svg>");
-  EXPECT_TRUE(contains(said(unit), "`unit` is needed"));
+  EXPECT_TRUE(testing::mentions_all(said(unit), {"no_unit.svg", "`unit`"}));
 }
 
 }  // namespace

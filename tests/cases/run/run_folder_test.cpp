@@ -50,7 +50,7 @@ TEST(RunFolders, BelongToTheRunThatLives) {
       ChildProgram({FLEXMORPH_PROGRAM, "run", quick, "-o", folder, "--quiet"}, words.string())
           .end();
   EXPECT_EQ(refused.code, 2);
-  EXPECT_TRUE(contains(refused.err, "process " + std::to_string(child.pid()) + " on "));
+  EXPECT_TRUE(contains(refused.err, "process " + std::to_string(child.pid())));
   EXPECT_EQ(contents_of(folder + "/run.json"), before);
   child.send(SIGKILL);
   child.end();
@@ -62,7 +62,7 @@ TEST(RunFolders, BelongToTheRunThatLives) {
   EXPECT_GT(columns, 5u);
   const Ended ended = flexmorph(scratch, {"run", quick, "-o", folder});
   EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_TRUE(contains(ended.out, "was moved to " + folder + ".previous"));
+  EXPECT_TRUE(contains(ended.out, folder + ".previous"));
   EXPECT_EQ(run_json(folder)["status"], "done");
   EXPECT_EQ(run_json(folder + ".previous")["status"], "running");
 }
@@ -141,7 +141,8 @@ TEST(RunFolders, AreNotLeftByNames) {
     const Ended ended = flexmorph(scratch, {"run", "short_beam", "-o", scratch / "out/run", "--set",
                                             "domain.name='" + name + "'"});
     EXPECT_EQ(ended.code, 2);
-    EXPECT_TRUE(contains(ended.err, "at most 64")) << ended.err;
+    EXPECT_TRUE(contains(ended.err, "flexmorph: --set domain.name='" + name + "': "));
+    EXPECT_TRUE(contains(ended.err, " 64 ")) << ended.err;
     EXPECT_FALSE(fs::exists(scratch / "out"));
   }
   EXPECT_EQ(contents_of(scratch / "precious.csv"), "years of work");
@@ -181,8 +182,8 @@ TEST(RunFolders, OnAFullDiskHoldWholeRows) {
   const std::string command = "trap '' XFSZ; ulimit -f 40; exec " + std::string(FLEXMORPH_PROGRAM) +
                               " run " + path + " -o " + folder + " --quiet 2> " + err;
   EXPECT_EQ(testing::run_shell(command).code, 3);
-  EXPECT_TRUE(contains(contents_of(err), "motion.csv: cannot be written: File too large"))
-      << contents_of(err);
+  EXPECT_TRUE(contains(contents_of(err), "motion.csv: ")) << contents_of(err);
+  EXPECT_TRUE(contains(contents_of(err), "File too large")) << contents_of(err);
   const std::string text = contents_of(folder + "/motion.csv");
   EXPECT_GT(text.size(), 15000u);
   EXPECT_EQ(text.back(), '\n');
@@ -200,7 +201,8 @@ TEST(RunFolders, ThatAreRemovedEndTheRun) {
   child.send(SIGTERM);
   const Ended ended = child.end();
   EXPECT_EQ(ended.code, 3);
-  EXPECT_TRUE(contains(ended.err, "was removed during the run")) << ended.err;
+  EXPECT_TRUE(contains(ended.err, folder)) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "removed")) << ended.err;
   EXPECT_FALSE(fs::exists(folder));
 }
 

@@ -156,7 +156,8 @@ TEST(Run, WritesItsFolder) {
   // case.toml is a complete case that gives the same check.
   const Ended check = flexmorph(scratch, {"check", folder + "/case.toml"});
   EXPECT_EQ(check.code, 0) << check.err;
-  EXPECT_TRUE(contains(check.out, "24 components, 168 variables, 112 x 20 cells"));
+  for (const char* part : {"24 components", "168 variables", "112 x 20"})
+    EXPECT_TRUE(contains(check.out, part));
 }
 
 // The measure of the best cycle equals the value computed here from the written motion.
@@ -236,7 +237,9 @@ TEST(Run, KeepsTheBestOfItsCycles) {
   EXPECT_LE(run["shared_mass"]["used"].get<double>(),
             run["shared_mass"]["allowed"].get<double>() * (1 + 1e-4));
   EXPECT_GT(run["results"][0]["volume"].get<double>(), run["results"][1]["volume"].get<double>());
-  EXPECT_TRUE(contains(contents_of(folder + "/report.html"), "Cycles"));
+  const std::string report = contents_of(folder + "/report.html");
+  for (const char* column : {"<th>cycle</th>", "heavy: crisp compliance [J]"})
+    EXPECT_TRUE(contains(report, column)) << column;
 }
 
 TEST(Run, WritesNothingTheSceneDidNotAskFor) {

@@ -8,6 +8,7 @@
 #include "cases/scene/design/goal.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -36,7 +37,7 @@ TEST(Goal, ShorthandsAreRows) {
   EXPECT_EQ(stiff.limits[0].row, &mmc::kVolume);
   EXPECT_EQ(stiff.limits[0].value, 0.4);
   EXPECT_FALSE(stiff.limits[0].at_least);
-  EXPECT_EQ(goal_text(stiff), "summed compliance under a volume of 0.4");
+  EXPECT_TRUE(testing::mentions_all(goal_text(stiff), {"summed compliance", "volume", "0.4"}));
 
   const mmc::Goal light =
       goal_of({"design.minimize=volume", "design.loads=worst", "design.max_compliance=80.0"});
@@ -44,7 +45,7 @@ TEST(Goal, ShorthandsAreRows) {
   ASSERT_EQ(light.limits.size(), 1u);
   EXPECT_EQ(light.limits[0].row, &mmc::kComplianceWorst);
   EXPECT_EQ(light.limits[0].value, 80);
-  EXPECT_EQ(goal_text(light), "volume under a largest compliance of 80 J");
+  EXPECT_TRUE(testing::mentions_all(goal_text(light), {"volume", "largest compliance", "80 J"}));
 }
 
 TEST(Goal, HasAnyNumberOfConstraints) {
@@ -61,12 +62,12 @@ TEST(Goal, HasAnyNumberOfConstraints) {
   EXPECT_EQ(goal.limits[2].row, &mmc::kComplianceSum);
   // a limit of mass is a limit of volume
   EXPECT_DOUBLE_EQ(mmc::allowed_volume(goal).value(), 0.25);
-  EXPECT_EQ(limit_text(goal),
-            "mass at most 500 kg, mass at least 100 kg, summed compliance at most 90 J, volume at "
-            "most 0.5");
-  EXPECT_EQ(goal_text(goal),
-            "largest compliance under a mass of 500 kg and a summed compliance of 90 J and a "
-            "volume of 0.5 with a mass of at least 100 kg");
+  EXPECT_TRUE(testing::mentions_all(
+      limit_text(goal),
+      {"mass", "500 kg", "mass", "100 kg", "summed compliance", "90 J", "volume", "0.5"}));
+  EXPECT_TRUE(testing::mentions_all(goal_text(goal),
+                                    {"largest compliance", "mass", "500 kg", "mass", "100 kg",
+                                     "summed compliance", "90 J", "volume", "0.5"}));
 }
 
 // A limit of mass determines the start layout as the equivalent limit of volume does: the bars of
@@ -82,56 +83,58 @@ TEST(Goal, LimitOfMassMakesTheStart) {
 struct Refused {
   const char* name;
   Changes changes;
-  const char* said;
+  std::vector<std::string> parts;  ///< Parts of the message after its location.
 };
 void PrintTo(const Refused& bad, std::ostream* out) { *out << bad.name; }
 class GoalRefuses : public ::testing::TestWithParam<Refused> {};
 TEST_P(GoalRefuses, AndSaysWhy) {
   const std::string said = complaint(GetParam().changes);
-  EXPECT_NE(said.find(GetParam().said), std::string::npos) << "said: " << said;
+  EXPECT_TRUE(testing::mentions_all(said, GetParam().parts,
+                                    location_in(said, shipped("short_beam"), GetParam().changes)));
 }
 INSTANTIATE_TEST_SUITE_P(
     Table, GoalRefuses,
     ::testing::Values(
         Refused{"no_density",
                 {"domain.density=", "design.constraint=[{response='mass', at_most=1.0}]"},
-                "set domain.density [kg/m^3]"},
+                {"design.constraint.response = 'mass'", "domain.density", "[kg/m^3]"}},
         Refused{"unknown",
                 {"design.constraint=[{response='beauty', at_least=1.0}]"},
-                "a response is one of 'compliance', 'volume', 'mass'"},
-        Refused{
-            "unnamed", {"design.constraint=[{at_most=0.5}]"}, "a constraint needs a `response`"},
+                {"design.constraint.response = 'beauty'", "'compliance', 'volume', 'mass'"}},
+        Refused{"unnamed",
+                {"design.constraint=[{at_most=0.5}]"},
+                {"design.constraint.response", "missing"}},
         Refused{"no_bound",
                 {"design.constraint=[{response='volume'}]"},
-                "a constraint needs `at_most`, `at_least` or both"},
+                {"design.constraint", "at_most", "at_least"}},
         Refused{"loads",
                 {"design.constraint=[{response='volume', loads='sum', at_most=0.5}]"},
-                "only \"compliance\" combines loads"},
+                {"design.constraint.loads = 'sum'", "compliance"}},
         Refused{"minimized",
                 {"design.constraint=[{response='compliance', at_most=80.0}]"},
-                "a minimized response has no limit"},
+                {"design.constraint.response = 'compliance'", "minimized"}},
         Refused{"twice",
                 {"design.max_volume=0.5", "design.constraint=[{response='volume', at_most=0.4}]"},
-                "the volume has a limit already"},
+                {"design.constraint.response = 'volume'", "already"}},
         Refused{"lower_compliance",
                 {"design.constraint=[{response='compliance', loads='worst', at_least=80.0}]"},
-                "only \"volume\", \"mass\""},
+                {"design.constraint.at_least = 80.0", "volume", "mass"}},
         Refused{"crossed",
                 {"design.constraint=[{response='volume', at_most=0.3, at_least=0.4}]"},
-                "a lower limit is at most `at_most`"},
+                {"design.constraint.at_least = 0.4", "at_most"}},
         Refused{"too_much",
                 {"design.constraint=[{response='mass', at_most=2001.0}]"},
-                "a mass lies between 0 and 2000 (0 excluded) [kg]"},
+                {"design.constraint.at_most = 2001.0", "2000", "[kg]"}},
         Refused{"full",
                 {"design.constraint=[{response='volume', at_least=0.4}]"},
-                "the full plate is the stiffest"},
+                {"full plate", "[[design.constraint]]", "at_most", "volume"}},
         Refused{"empty",
                 {"design.minimize=mass", "design.constraint=[{response='volume', at_most=0.4}]"},
-                "the empty plate has the least mass"},
+                {"empty plate", "[[design.constraint]]", "at_most", "compliance", "at_least"}},
         Refused{"wrong_shorthand",
                 {"design.minimize=mass", "design.max_volume=0.4", "design.max_compliance=80.0"},
-                "only minimize = \"compliance\" allows a largest volume"},
-        Refused{"missing", {"design.minimize=mass"}, "max_compliance"}),
+                {"minimize", "compliance"}},
+        Refused{"missing", {"design.minimize=mass"}, {"design.max_compliance", "missing"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Goal, ErrorsOfConstraintsAreLocated) {

@@ -10,6 +10,7 @@
 #include "cases/check/check_cost.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -112,15 +113,13 @@ TEST(ResourceEstimate, StepsAreCountedBeyondAllIntegers) {
     read("free_beam_heated", {"time.step=1e-12"});
     FAIL();
   } catch (const Error& e) {
-    EXPECT_STREQ(
-        e.what(),
-        "--set time.step=1e-12: 1e+12 steps are needed; the largest number of steps is 2.15e+09");
+    EXPECT_TRUE(testing::mentions_all(e.what(), {"1e+12", "2.15e+09"}, "--set time.step=1e-12: "));
   }
   EXPECT_EQ(estimate_resources(read("free_beam_heated", {"output.motion_every=1e-11"})).steps,
             1e11);
-  EXPECT_EQ(complaint(read("free_beam_heated", {"output.motion_every=1e-11"}), endless),
-            "--set output.motion_every=1e-11: 1e+11 steps are needed; the largest number of steps "
-            "is 2.15e+09");
+  EXPECT_TRUE(testing::mentions_all(
+      complaint(read("free_beam_heated", {"output.motion_every=1e-11"}), endless),
+      {"1e+11", "2.15e+09"}, "--set output.motion_every=1e-11: "));
   EXPECT_EQ(complaint(read("free_beam_heated", {"time.step=1e-9"}), endless), "");
 }
 
@@ -129,50 +128,50 @@ TEST(ResourceEstimate, WhatAMachineHasNotIsRefusedAtTheNumberToBlame) {
     const char* name;
     Changes changes;
     Machine machine;
-    std::string location, words;
+    std::string location;
+    std::vector<std::string> parts;
   };
   const std::string folder = FLEXMORPH_CASES;
   const std::string four_bar = folder + "/four_bar.toml:", beam = folder + "/short_beam.toml:";
-  for (const Row& row : std::vector<Row>{
-           {"four_bar", {"time.step=1e-7"}, {1e9, kPlenty}, "--set time.step=1e-7: ", "of memory"},
-           {"four_bar",
-            {"body.elements=[300, 300]"},
-            {1e9, kPlenty},
-            "--set body.elements=[300, 300]: ",
-            "for the mesh of 'rocker'; this machine has 1 GB"},
-           {"free_beam_heated",
-            {"body.elements=100000"},
-            {2e10, kPlenty},
-            "--set body.elements=100000: ",
-            "for the thermal force of 'beam'; this machine has 20 GB"},
-           {"four_bar",
-            {"verify="},
-            {9e7, kPlenty},
-            four_bar + "123:9: esl.every = ",
-            "the loads of"},
-           {"four_bar",
-            {"cycle.max_cycles=1"},
-            {kPlenty, 1e6},
-            four_bar,
-            "frames of the motion; the free disk space is 1 MB"},
-           {"short_beam",
-            {"design.cell=0.00125"},
-            {1e9, kPlenty},
-            "--set design.cell=0.00125: ",
-            "for the design of 'beam'; this machine has 1 GB"},
-           {"short_beam",
-            {},
-            {kPlenty, 1e6},
-            beam,
-            "frames of the design of 'beam'; the free disk"},
-           {"plate_pendulum",
-            {"output.motion_every=1e-5"},
-            {kPlenty, 1e8},
-            "--set output.motion_every=1e-5: ",
-            "of disk"}}) {
+  for (const Row& row :
+       std::vector<Row>{{"four_bar",
+                         {"time.step=1e-7"},
+                         {1e9, kPlenty},
+                         "--set time.step=1e-7: ",
+                         {"GB", "memory"}},
+                        {"four_bar",
+                         {"body.elements=[300, 300]"},
+                         {1e9, kPlenty},
+                         "--set body.elements=[300, 300]: ",
+                         {"mesh", "'rocker'", "1 GB"}},
+                        {"free_beam_heated",
+                         {"body.elements=100000"},
+                         {2e10, kPlenty},
+                         "--set body.elements=100000: ",
+                         {"thermal force", "'beam'", "20 GB"}},
+                        {"four_bar",
+                         {"verify="},
+                         {9e7, kPlenty},
+                         four_bar + "123:9: esl.every = ",
+                         {"loads", "'rocker'", "90 MB"}},
+                        {"four_bar",
+                         {"cycle.max_cycles=1"},
+                         {kPlenty, 1e6},
+                         four_bar,
+                         {"disk", "motion", "1 MB"}},
+                        {"short_beam",
+                         {"design.cell=0.00125"},
+                         {1e9, kPlenty},
+                         "--set design.cell=0.00125: ",
+                         {"design", "'beam'", "1 GB"}},
+                        {"short_beam", {}, {kPlenty, 1e6}, beam, {"disk", "'beam'", "1 MB"}},
+                        {"plate_pendulum",
+                         {"output.motion_every=1e-5"},
+                         {kPlenty, 1e8},
+                         "--set output.motion_every=1e-5: ",
+                         {"disk", "100 MB"}}}) {
     const std::string found = complaint(read(row.name, row.changes), row.machine);
-    EXPECT_TRUE(starts(found, row.location)) << found;
-    EXPECT_TRUE(contains(found, row.words)) << found;
+    EXPECT_TRUE(testing::mentions_all(found, row.parts, row.location));
     EXPECT_EQ(complaint(read(row.name, row.changes), {kPlenty, kPlenty}), "") << row.name;
   }
 }

@@ -12,6 +12,7 @@
 #include "cases/results/schema.h"
 #include "cases/results/warnings.h"
 #include "tests/cases/scenes.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -71,10 +72,11 @@ TEST(Variation, OfASine) {
   EXPECT_NEAR(found.largest, 5, 1e-12);
 }
 
-/// Returns the number of warnings that contain a text.
-std::ptrdiff_t count(const std::vector<Warning>& warnings, const std::string& words) {
-  return std::count_if(warnings.begin(), warnings.end(),
-                       [&](const Warning& w) { return w.words.find(words) != std::string::npos; });
+/// Returns the number of warnings that mention all these parts.
+std::ptrdiff_t count(const std::vector<Warning>& warnings, const std::vector<std::string>& parts) {
+  return std::count_if(warnings.begin(), warnings.end(), [&](const Warning& w) {
+    return static_cast<bool>(testing::mentions_all(w.words, parts));
+  });
 }
 
 TEST(Warnings, OfVibrationAndDissipation) {
@@ -89,14 +91,14 @@ TEST(Warnings, OfVibrationAndDissipation) {
     result.motions.uniform = swinging(0.5, uniform_size);
     return warnings_of(scene, result);
   };
-  EXPECT_EQ(count(warned(1.06, 0), "vibrates more than with uniform material"), 1);
-  EXPECT_EQ(count(warned(1.04, 0), "vibrates more"), 0);
+  EXPECT_EQ(count(warned(1.06, 0), {"tip", "'plate'", "peak-to-peak", "1.06"}), 1);
+  EXPECT_EQ(count(warned(1.04, 0), {"peak-to-peak"}), 0);
   // For static plates the difference is due to rounding.
-  EXPECT_EQ(count(warned(2e-13, 0, 1e-13), "vibrates more"), 0);
-  EXPECT_EQ(count(warned(1, 0.011), "dissipates 1.1 % of the largest energy"), 1);
-  EXPECT_EQ(count(warned(1, 0.009), "dissipates"), 0);
-  EXPECT_EQ(count(warned(1, -0.02), "adds 2 % of the largest energy"), 1);
-  EXPECT_EQ(count(warned(1, -0.009), "adds"), 0);
+  EXPECT_EQ(count(warned(2e-13, 0, 1e-13), {"peak-to-peak"}), 0);
+  EXPECT_EQ(count(warned(1, 0.011), {"time integration", "dissipates", "1.1 %"}), 1);
+  EXPECT_EQ(count(warned(1, 0.009), {"time integration"}), 0);
+  EXPECT_EQ(count(warned(1, -0.02), {"time integration", "adds", "2 %"}), 1);
+  EXPECT_EQ(count(warned(1, -0.009), {"time integration"}), 0);
   const std::optional<PointVariation> tip = tip_variation(result.motions, "plate");
   ASSERT_TRUE(tip);
   EXPECT_NEAR(tip->rms_ratio(), 1, 1e-12);
@@ -124,11 +126,10 @@ TEST(Warnings, OfChangesOfTheMeshThatMoveStrainEnergy) {
     }
     return warnings_of(scene, result);
   };
-  EXPECT_EQ(count(warned({}), "mesh changes"), 0);
-  EXPECT_EQ(count(warned({0.099, -0.099}), "mesh changes"), 0);
+  EXPECT_EQ(count(warned({}), {"mesh changes"}), 0);
+  EXPECT_EQ(count(warned({0.099, -0.099}), {"mesh changes"}), 0);
   const std::vector<Warning> found = warned({0.05, -0.3, 0.2});
-  EXPECT_EQ(count(found, "2 of 3 mesh changes"), 1);
-  EXPECT_EQ(count(found, "2 J. The largest change is 0.3 J at t = 0.5 s in body 'plate'"), 1);
+  EXPECT_EQ(count(found, {"mesh changes", "2 of 3", "2 J", "0.3 J", "t = 0.5 s", "'plate'"}), 1);
 }
 
 void expect_described(const std::vector<ColumnInfo>& columns, const std::string& name) {

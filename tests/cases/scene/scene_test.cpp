@@ -12,6 +12,7 @@
 #include "cases/assembly/build.h"
 #include "cases/scene/joints/row.h"
 #include "tests/cases/scenes.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -165,8 +166,9 @@ TEST(SceneReader, ErrorsInTheFileNameLineKeyAndValue) {
     message = e.what();
   }
   std::remove(path.c_str());
-  EXPECT_EQ(message, path + ":" + std::to_string(found) +
-                         ":13: body.thickness = -0.002: a thickness is positive [m]");
+  EXPECT_TRUE(
+      testing::mentions_all(message, {"positive", "[m]"},
+                            path + ":" + std::to_string(found) + ":13: body.thickness = -0.002: "));
 }
 
 // A cell of a motion with an exact gradient consists of equally many cells of every design in each
@@ -182,7 +184,8 @@ TEST(SceneReader, MergesAsManyCellsOfAllDesigns) {
   } catch (const Error& error) {
     message = error.what();
   }
-  EXPECT_TRUE(message.ends_with("it differs for 'light' (0.0166667 m)")) << message;
+  EXPECT_TRUE(
+      testing::mentions_all(message, {"'light'", "0.0166667 m"}, "--set cycle.cell=0.0166667: "));
 }
 
 // If another body has free lines, the times of its mesh changes depend on the design, and there is
@@ -213,10 +216,8 @@ TEST(SceneReader, RefusesGradientsWhereLinesAreFree) {
       message = error.what();
       EXPECT_EQ(error.kind(), Error::Kind::input);
     }
-    EXPECT_TRUE(
-        message.ends_with("the motion has no exact gradient: the times at which meshes with free "
-                          "material lines change depend on the design ([[body.line]])"))
-        << message;
+    EXPECT_TRUE(testing::mentions_all(message, {"gradient", "[[body.line]]"},
+                                      std::string("--set ") + change + ": "));
   }
   std::remove(path.c_str());
 }
@@ -247,14 +248,12 @@ TEST(SceneReader, OnlyDesignsWithTheSameGoalShareMass) {
     return message;
   };
   EXPECT_EQ(complaint_of({"design.light.max_volume=0.3"}, false), "");
-  EXPECT_TRUE(complaint_of({"design.light.loads=worst"}, false)
-                  .ends_with("\"shared_mass\" needs loads = \"sum\", because the compliances of "
-                             "all bodies are added"));
-  EXPECT_TRUE(
-      complaint_of({}, true).ends_with("\"shared_mass\" needs minimize = \"compliance\", because "
-                                       "designs share the material that max_volume allows"));
-  EXPECT_TRUE(complaint_of({"design.light.coupling=none"}, false)
-                  .ends_with("\"shared_mass\" needs a second [[design]] with \"shared_mass\""));
+  EXPECT_TRUE(testing::mentions_all(complaint_of({"design.light.loads=worst"}, false),
+                                    {"design.light.coupling", "shared_mass", "loads", "sum"}));
+  EXPECT_TRUE(testing::mentions_all(complaint_of({}, true),
+                                    {"coupling", "shared_mass", "minimize", "compliance"}));
+  EXPECT_TRUE(testing::mentions_all(complaint_of({"design.light.coupling=none"}, false),
+                                    {"design.heavy.coupling", "shared_mass", "[[design]]"}));
 }
 
 }  // namespace

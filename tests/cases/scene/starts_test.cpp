@@ -8,6 +8,7 @@
 #include "cases/assembly/build.h"
 #include "fem/dynamics/starts/driven_frame.h"
 #include "tests/io/scratch.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -64,8 +65,8 @@ const std::string kCoupler = rigid("rod", "position = [0.5, 0.4]") +
 struct Case {
   const char* name;
   std::string text;
-  bool free = false;              ///< True if momentum is conserved.
-  const char* refused = nullptr;  ///< Text of the refusal.
+  bool free = false;                      ///< True if momentum is conserved.
+  std::vector<std::string> refused = {};  ///< Parts of the message if the case is refused.
 };
 
 std::string with(std::string text, const std::string& speed) {
@@ -129,25 +130,32 @@ const Case kCases[] = {
      with(kCranks, "angular_velocity = 2.0") + plate("rod", "length = 1.0\nposition = [0.0, 0.4]") +
          joint("revolute", "a = \"a\"\npoint_a = [0.2, 0.0]\nb = \"rod\"\npoint_b = [0.0, 0.0]") +
          joint("revolute", "a = \"b\"\npoint_a = [0.2, 0.0]\nb = \"rod\"\npoint_b = [1.0, 0.0]")},
-    {"against_a_pin", rigid("a", "position = [0.2, 0.0]\nvelocity = [1.0, 0.0]") + kPendulum, false,
-     "rigid_body.a.velocity = [1, 0]: this contradicts joint "},
+    {"against_a_pin",
+     rigid("a", "position = [0.2, 0.0]\nvelocity = [1.0, 0.0]") + kPendulum,
+     false,
+     {"rigid_body.a.velocity = [1, 0]", "revolute", "1 m/s"}},
     {"against_a_pin_by_all_of_it",
-     rigid("a", "position = [0.2, 0.0]\nvelocity = [0.5, 0.0]") + kPendulum, false, " by 0.5 m/s"},
+     rigid("a", "position = [0.2, 0.0]\nvelocity = [0.5, 0.0]") + kPendulum,
+     false,
+     {"rigid_body.a.velocity = [0.5, 0]", "0.5 m/s"}},
     {"against_a_drive",
      rigid("a", "position = [0.2, 0.0]\nangular_velocity = 4.0") + kPendulum +
          "\n[[drive]]\nname = \"turn\"\nformula = \"2*t\"\n" +
          joint("angle_drive", "name = \"motor\"\nb = \"a\"\nangle = \"turn\""),
-     false, "'motor'"},
+     false,
+     {"rigid_body.a.angular_velocity = 4", "'motor'"}},
     {"against_each_other",
      rigid("a", "position = [0.2, 0.0]\nangular_velocity = 1.0") +
          rigid("b", "position = [0.6, 0.0]\nvelocity = [0.0, 5.0]\nangular_velocity = 0.0") +
          kTwoLinks,
-     false, "a.angular_velocity = 1, b.velocity = [0, 5]"},
+     false,
+     {"rigid_body.a.angular_velocity = 1", "b.velocity = [0, 5]"}},
     {"zero_is_a_velocity",
      rigid("a", "position = [0.2, 0.0]\nangular_velocity = 0.0") + kPendulum +
          "\n[[drive]]\nname = \"turn\"\nformula = \"2*t\"\n" +
          joint("angle_drive", "name = \"motor\"\nb = \"a\"\nangle = \"turn\""),
-     false, "angular_velocity = 0: this contradicts"},
+     false,
+     {"rigid_body.a.angular_velocity = 0", "'motor'"}},
 };
 
 Scene scene_of(const std::string& text) {
@@ -179,13 +187,13 @@ class FreeMechanisms : public ::testing::TestWithParam<Case> {};
 TEST_P(GivenVelocities, AreKeptOrRefused) {
   const Case& c = GetParam();
   const Scene scene = scene_of(c.text);
-  if (c.refused) {
+  if (!c.refused.empty()) {
     try {
       build_mechanism(scene);
       FAIL() << "not refused";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), Error::Kind::input);
-      EXPECT_NE(std::string(error.what()).find(c.refused), std::string::npos) << error.what();
+      EXPECT_TRUE(testing::mentions_all(error.what(), c.refused));
       EXPECT_NE(std::string(error.what()).find("case.toml:"), std::string::npos) << error.what();
     }
     return;

@@ -11,6 +11,7 @@
 #include "optim/mmc/cycles/design_verification.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -139,30 +140,33 @@ TEST(StaticScene, SymmetryThatIsAskedForIsThereOrRefused) {
       "y");
   EXPECT_EQ(symmetry("rotating_plate_v01", {}), "none");
   const Changes low = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'"};
-  EXPECT_TRUE(contains(complaint("short_beam", low),
-                       "the set of loads is not symmetric about the line y = 0.5 m"));
+  const std::string asked = "--set design.symmetry='y': ";
+  EXPECT_TRUE(testing::mentions_all(complaint("short_beam", low), {"loads", "y = 0.5 m"}, asked));
   const Changes enforced = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'",
                             "design.symmetry_despite_loads=true"};
   EXPECT_EQ(symmetry("short_beam", enforced), "y");
-  for (const auto& [changes, said] : std::vector<std::pair<Changes, std::string>>{
-           {{"design.symmetry='x'"}, "the supports are not symmetric about the line x = 1 m"},
-           {{"design.symmetry='both'"}, "the supports are"},
+  struct Asymmetric {
+    Changes changes;
+    std::vector<std::string> parts;
+  };
+  for (const auto& [changes, parts] : std::vector<Asymmetric>{
+           {{"design.symmetry='x'"}, {"supports", "x = 1 m"}},
+           {{"design.symmetry='both'"}, {"supports", "x = 1 m"}},
            {{"design.symmetry='y'", "design.solid=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
-            "the solid regions are"},
+            {"solid", "y = 0.5 m"}},
            {{"design.symmetry='y'", "design.void=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
-            "the void regions are"},
-           {{"design.symmetry_despite_loads=true"}, "this key needs symmetry"}}) {
-    const std::string message = complaint("short_beam", changes);
-    EXPECT_TRUE(contains(message, said)) << message;
-    EXPECT_TRUE(contains(message, "design.symmetry")) << message;
-  }
-  EXPECT_TRUE(
-      contains(complaint("l_bracket", {"design.symmetry='y'"}), "the domain is not symmetric"));
+            {"void", "y = 0.5 m"}},
+           {{"design.symmetry_despite_loads=true"}, {"symmetry = \"x\"", "\"y\"", "\"both\""}}})
+    EXPECT_TRUE(testing::mentions_all(complaint("short_beam", changes), parts,
+                                      "--set " + changes[0] + ": "));
+  EXPECT_TRUE(testing::mentions_all(complaint("l_bracket", {"design.symmetry='y'"}),
+                                    {"domain", "y = 0.5 m"}, asked));
   try {
     symmetry("rotating_plate_v01", {"design.symmetry='y'"});
     ADD_FAILURE();
   } catch (const Error& e) {
-    EXPECT_TRUE(contains(e.what(), "the loads of a motion are not symmetric")) << e.what();
+    EXPECT_TRUE(testing::mentions_all(
+        e.what(), {"loads", "motion", "y = 0 m", "symmetry_despite_loads"}, asked));
   }
 }
 
@@ -231,29 +235,32 @@ TEST(StaticScene, StartsFromAFileOfComponents) {
 struct Bad {
   const char* name;
   Changes changes;
-  const char* said;
+  std::vector<std::string> parts;  ///< Parts of the message after its location.
 };
 class StaticSceneRefuses : public ::testing::TestWithParam<Bad> {};
 TEST_P(StaticSceneRefuses, AndSaysWhy) {
   const std::string said = complaint("short_beam", GetParam().changes);
-  EXPECT_NE(said.find(GetParam().said), std::string::npos) << "said: " << said;
+  EXPECT_TRUE(testing::mentions_all(said, GetParam().parts,
+                                    location_in(said, shipped("short_beam"), GetParam().changes)));
 }
 INSTANTIATE_TEST_SUITE_P(
     Table, StaticSceneRefuses,
     ::testing::Values(
-        Bad{"motion", {"time.end=1"}, "is static"},
-        Bad{"size", {"domain.size=[2.0, -1.0]"}, "a length or a height"},
-        Bad{"both", {"domain.polygon=[0.0, 0.0, 1.0, 0.0, 1.0, 1.0]"}, "exactly one of `size`"},
-        Bad{"edge", {"support.edge=\"rear\""}, "an edge"},
-        Bad{"axis", {"support.fix=[\"z\"]"}, "a direction"},
-        Bad{"goal", {"design.minimize=\"weight\""}, "an objective"},
-        Bad{"limit", {"design.max_compliance=10.0"}, "only minimize = \"volume\""},
-        Bad{"no_limit", {"design.minimize=\"volume\""}, "max_compliance"},
-        Bad{"start", {"design.start=\"nowhere.csv\""}, "nowhere.csv: cannot be read"},
+        Bad{"motion", {"time.end=1"}, {"[time]", "[domain]"}},
+        Bad{"size", {"domain.size=[2.0, -1.0]"}, {"positive", "[m]"}},
+        Bad{"both",
+            {"domain.polygon=[0.0, 0.0, 1.0, 0.0, 1.0, 1.0]"},
+            {"domain", "size", "polygon", "outline"}},
+        Bad{"edge", {"support.edge=\"rear\""}, {"'left', 'right', 'bottom', 'top'"}},
+        Bad{"axis", {"support.fix=[\"z\"]"}, {"'x', 'y'"}},
+        Bad{"goal", {"design.minimize=\"weight\""}, {"'compliance', 'volume', 'mass'"}},
+        Bad{"limit", {"design.max_compliance=10.0"}, {"minimize", "volume"}},
+        Bad{"no_limit", {"design.minimize=\"volume\""}, {"design.max_compliance", "missing"}},
+        Bad{"start", {"design.start=\"nowhere.csv\""}, {"nowhere.csv"}},
         Bad{"far_load",
             {"load.force.point=[9.0, 0.5]", "load.force.edge=", "load.force.box="},
-            "load.force.point=[9.0, 0.5]: a location lies in the domain"},
-        Bad{"unknown", {"domain.depth=1.0"}, "depth"}),
+            {"[0, 2] x [0, 1] [m]"}},
+        Bad{"unknown", {"domain.depth=1.0"}, {"size", "thickness", "youngs_modulus"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // The load lies within the bounding box, but not within the domain: this is detected on the mesh,
@@ -261,15 +268,16 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(StaticScene, LoadsOutsideOfAPolygonAreRefusedWhereTheyStand) {
   const std::string said = complaint(
       "l_bracket", {"load.force.point=[0.9, 0.9]", "load.force.edge=", "load.force.box="});
-  EXPECT_TRUE(contains(said, "load.force.point=[0.9, 0.9]: no material can be there")) << said;
+  EXPECT_TRUE(
+      testing::mentions_all(said, {"material", "0.0125 m"}, "--set load.force.point=[0.9, 0.9]: "));
 }
 
 TEST(StaticScene, NamesOfLoadsAreUnlike) {
-  EXPECT_TRUE(contains(complaint("bridge", {"load.1.name=left"}),
-                       "--set load.1.name=left: there is another load 'left'"));
+  EXPECT_TRUE(testing::mentions_all(complaint("bridge", {"load.1.name=left"}),
+                                    {"another", "'left'"}, "--set load.1.name=left: "));
   // A default name made from the number of the load counts, too.
-  EXPECT_TRUE(contains(complaint("bridge", {"load.0.name=load_2", "load.1.name="}),
-                       "another load 'load_2'"));
+  EXPECT_TRUE(testing::mentions_all(complaint("bridge", {"load.0.name=load_2", "load.1.name="}),
+                                    {"load.1", "another", "'load_2'"}, shipped("bridge") + ":"));
   EXPECT_EQ(complaint("bridge", {"load.0.name=one", "load.1.name=two"}), "");
 }
 
@@ -283,9 +291,8 @@ TEST(FlexibleBodies, AreNotRigidOnes) {
     } catch (const Error& e) {
       said = e.what();
     }
-    EXPECT_TRUE(contains(said, "this is a rigid body; ")) << change;
-    EXPECT_TRUE(contains(said, " is a plate or beam ([[body]])")) << change;
-    EXPECT_TRUE(starts(said, "--set ")) << change;
+    EXPECT_TRUE(testing::mentions_all(said, {"rigid body", "[[body]]"},
+                                      std::string("--set ") + change + ": "));
   }
 }
 

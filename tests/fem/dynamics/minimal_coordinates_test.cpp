@@ -332,8 +332,8 @@ TEST(MinimalCoordinates, SaysWhatIsStiff) {
   const std::string text =
       error_of(Error::Kind::numerical, [&] { scheme.advance(x, 0.1, [](const State&) {}); });
   std::cout << text << '\n';
-  EXPECT_TRUE(mentions(text, "stiff: its largest angular frequency of")) << text;
-  EXPECT_TRUE(mentions(text, "step size")) << text;
+  for (const char* part : {"step size", "stiff", "rad/s", "generalized_alpha"})
+    EXPECT_TRUE(mentions(text, part)) << part << ": " << text;
   EXPECT_GT(x.t, 0);  // x is the last good state
   EXPECT_TRUE(x.q.allFinite());
   Drift drift;
@@ -354,7 +354,7 @@ TEST(MinimalCoordinates, StopsWhereAMechanismLocks) {
       error_of(Error::Kind::numerical, [&] { scheme.advance(x, 1, [](const State&) {}); });
   const double locks = std::asin(s.rod / s.crank) - 0.4;
   std::cout << text << ", locks at " << locks << " s\n";
-  EXPECT_TRUE(mentions(text, "minimal_coordinates: at t = ")) << text;
+  EXPECT_TRUE(mentions(text, "t = ") && mentions(text, "step size")) << text;
   EXPECT_NEAR(x.t, locks, 1e-6);
   EXPECT_LE(x.t, locks);
 }
@@ -367,9 +367,8 @@ TEST(MinimalCoordinates, RefusesWhatHasNoAccelerations) {
     MinimalCoordinates scheme(model, {});
     State x = s.at(model, {0.4, 0, 0});
     const std::string text = error_of(Error::Kind::numerical, [&] { scheme.make_consistent(x); });
-    EXPECT_TRUE(
-        mentions(text, "'axis', 'second axis' constrain 2 degrees of freedom more than once"))
-        << text;
+    for (const char* part : {"dependent", "'axis'", "'second axis'", "2 degrees of freedom"})
+      EXPECT_TRUE(mentions(text, part)) << part << ": " << text;
   }
   {  // the massless block can move along its guide
     Workspace model;
@@ -380,12 +379,13 @@ TEST(MinimalCoordinates, RefusesWhatHasNoAccelerations) {
     MinimalCoordinates scheme(model, {});
     State x = model.reference();
     const std::string text = error_of(Error::Kind::input, [&] { scheme.make_consistent(x); });
-    EXPECT_TRUE(mentions(text, "without mass are not fixed; they belong to 'block'.")) << text;
+    EXPECT_TRUE(mentions(text, "mass") && mentions(text, "'block'")) << text;
+    EXPECT_FALSE(mentions(text, "'other'")) << text;
   }
   Workspace model = s.model();
   for (const double tolerance : {0.0, 1e-15, 1.0, std::nan("")}) {
     const auto make = [&] { make_integrator(model, minimal(tolerance)); };
-    EXPECT_TRUE(mentions(error_of(Error::Kind::input, make), "must lie in [1e-13, 1)"));
+    EXPECT_TRUE(mentions(error_of(Error::Kind::input, make), "[1e-13, 1)"));
   }
 }
 

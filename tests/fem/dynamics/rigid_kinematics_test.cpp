@@ -153,11 +153,13 @@ TEST(RigidMechanisms, HingeAndWeldTwice) {
     location(model, "b", {1, 0}, 0, x.q);
     return diagnose(model, x);
   };
-  EXPECT_EQ(describe(diagnosis_of(model_with(false, 0))),
-            "joints 'hinge_1', 'hinge_2' constrain 2 degrees of freedom more than once");
+  const std::string hinged = describe(diagnosis_of(model_with(false, 0)));
+  for (const char* part : {"'hinge_1'", "'hinge_2'", "2 degrees of freedom"})
+    EXPECT_NE(hinged.find(part), std::string::npos) << hinged;
   const Diagnosis welded = diagnosis_of(model_with(true, 0));
-  EXPECT_EQ(describe(welded),
-            "joints 'weld_1', 'weld_2' constrain 3 degrees of freedom more than once");
+  EXPECT_FALSE(welded.is_contradictory());
+  for (const char* part : {"'weld_1'", "'weld_2'", "3 degrees of freedom"})
+    EXPECT_NE(describe(welded).find(part), std::string::npos) << describe(welded);
   EXPECT_EQ(welded.degrees_of_freedom(), 1);
   const Diagnosis apart = diagnosis_of(model_with(true, 0.012));
   EXPECT_TRUE(apart.is_contradictory());

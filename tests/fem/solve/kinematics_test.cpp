@@ -100,7 +100,7 @@ TEST(Kinematics, FastDrivesAreGivenUp) {
     motion.at(1);
     ADD_FAILURE() << "15 000 turns in 50 steps";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("after 50 steps"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("50 steps"), std::string::npos) << error.what();
   }
   EXPECT_EQ(motion.n_steps(), 50);
   EXPECT_FALSE(motion.follow(1, 60));
@@ -217,8 +217,7 @@ TEST(Kinematics, FreedomsThatAreLeftAreRefused) {
     FAIL() << "two degrees of freedom are left";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_NE(std::string(error.what()).find("2 degrees of freedom are not driven"),
-              std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("2 degrees of freedom"), std::string::npos)
         << error.what();
   }
   Workspace driven = bar.model(linear(0.7, 1));

@@ -283,9 +283,10 @@ TEST(StaticSolver, RefusesWhatItCannotFactor) {
     return std::string();
   };
   factor(kGrid.cell(12, 3)) = -5;
-  EXPECT_NE(kind_of(factor).find("node column 1"), std::string::npos) << kind_of(factor);
+  for (const char* part : {"positive definite", "column 1"})
+    EXPECT_NE(kind_of(factor).find(part), std::string::npos) << kind_of(factor);
   factor(kGrid.cell(12, 3)) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(kind_of(factor).find("finite"), std::string::npos);
+  EXPECT_NE(kind_of(factor).find(" finite"), std::string::npos) << kind_of(factor);
   factor.setOnes();
   factor.segment(kGrid.cell(10, 0), kGrid.ny).setZero();  // a gap: the free side is not held
   EXPECT_FALSE(kind_of(factor).empty());

@@ -280,7 +280,9 @@ TEST(Bending, NeedsSpace) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::input);
-    EXPECT_STREQ(error.what(), "body 'arm': term 'bending' needs a three-dimensional body");
+    const std::string text = error.what();
+    for (const char* part : {"'arm'", "'bending'", "three-dimensional"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
   }
 }
 
