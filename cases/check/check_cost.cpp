@@ -38,6 +38,12 @@ double points_of(const Body& body) {
 constexpr double kMotionRate = 5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
                  kPointSeconds = 2e-7;
 constexpr double kCellSeconds = 1.5e-6, kStart = 0.1;
+// Seconds per component: of the exact outline that constraints of widths need in an iteration, and
+// of a crisp design. Seconds per cell of a frame of a design. Seconds of the verification of an
+// outline: constant, per component, and per component and load.
+constexpr double kOutlineSeconds = 2.2e-3, kCrispSeconds = 6e-3, kFrameCellSeconds = 1e-6,
+
+                 kVerifiedSeconds = 0.3, kVerifiedComponent = 0.02, kVerifiedLoad = 2e-4;
 
 }  // namespace
 
@@ -85,9 +91,8 @@ double design_operations(const Scene& scene, const BodyDesign& d) {
   return n * band * (band + 3 * loads);
 }
 
-/// Returns the CPU time of motions on the cells of the designs [s]: at most one motion per cycle,
-/// and the motion with uniform material.
-double cells_seconds(const Scene& scene, const ResourceEstimate& resource_estimate) {
+/// Returns the CPU time of one motion on the cells of the designs [s].
+double cells_seconds(const Scene& scene, double steps) {
   const Scene cells = on_cells(scene, scene.verify->cells);
   double step = 0;
   for (const BodyDesign& d : cells.designs) {
@@ -102,34 +107,96 @@ double cells_seconds(const Scene& scene, const ResourceEstimate& resource_estima
     step += along * across * (kForces * each.force + tangents * each.tangent);
     step += along * across * body.dim() * band * (tangents * kFactor * band + 4 * kSolutions);
   }
-  return resource_estimate.steps * step * (scene.cycle.max_cycles + 1) / kMotionRate;
+  return steps * step / kMotionRate;
+}
+
+/// Returns the CPU time of all permitted iterations of the designs in one cycle [s].
+double design_seconds(const Scene& scene) {
+  constexpr double kStages = 3;  // stages with equal shares; the last one constrains widths
+  double out = 0;
+  const std::vector<IterationCost> costs = iteration_costs(scene);
+  for (size_t i = 0; i < costs.size(); ++i) {
+    const double mean = costs[i].plain + (costs[i].with_widths - costs[i].plain) / kStages;
+    out += mean * scene.optimizer.max_iterations * scene.designs[i].starts;
+  }
+  return out;
+}
+
+/// Returns the CPU time of the verification of all outlines by triangles [s].
+double outline_seconds(const Scene& scene) {
+  double out = 0;
+  for (const BodyDesign& d : scene.designs) {
+    const double loads = scene.domain ? static_cast<double>(scene.domain->loads.size())
+                                      : scene.esl->count(scene.time.end);
+    out += kVerifiedSeconds + d.n_components() * (kVerifiedComponent + loads * kVerifiedLoad);
+  }
+  return out;
 }
 
 }  // namespace
 
-double expected_seconds(const Scene& scene, const Mechanism* mechanism) {
-  const ResourceEstimate resource_estimate = estimate_resources(scene);
-  double out = kStart;
+std::vector<IterationCost> iteration_costs(const Scene& scene) {
+  std::vector<IterationCost> out;
+  for (const BodyDesign& d : scene.designs) {
+    const double cells = 1.0 * d.grid.nx * d.grid.ny, components = d.n_components();
+    IterationCost& of = out.emplace_back();
+    of.body = d.body;
+    of.plain = design_operations(scene, d) / kFactorRate + cells * kCellSeconds;
+    if (scene.output.crisp_every > 0)
+      of.plain += components * kCrispSeconds / scene.output.crisp_every;
+    if (scene.output.vtk && scene.output.design_every > 0)
+      of.plain += cells * kFrameCellSeconds / scene.output.design_every;
+    of.with_widths = of.plain + (d.widths.any() ? components * kOutlineSeconds : 0);
+  }
+  return out;
+}
+
+std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanism) {
+  const ResourceEstimate resources = estimate_resources(scene);
+  double motion = 0, frames = 0;
   if (mechanism != nullptr) {
     const double step = scene.time.integrator == "minimal_coordinates"
                             ? kRigid * 1e2
                             : step_operations(scene, *mechanism).total();
-    // The verification computes two motions on a finer mesh; each cycle computes one for the loads.
-    const double finer = !scene.verify || scene.verifies_on_cells() ? 0
-                         : scene.verify->mesh                       ? 4
-                                              : std::pow(scene.verify->refine, 2);
-    const double cycles = resource_estimate.iterations > 0 ? scene.cycle.max_cycles + 2 : 1;
-    out += resource_estimate.steps * step * (cycles + 2 * finer) / kMotionRate;
-    if (scene.verifies_on_cells()) out += cells_seconds(scene, resource_estimate);
-    out += resource_estimate.frames * kFrameSeconds * static_cast<double>(scene.bodies.size());
+    motion = resources.steps * step / kMotionRate;
+    frames = resources.frames * kFrameSeconds * static_cast<double>(scene.bodies.size());
+    for (const BodyDesign& d : scene.designs)
+      frames += resources.frames * d.grid.nx * d.grid.ny * kPointSeconds;
   }
-  for (const BodyDesign& d : scene.designs) {
-    const double iterations =
-        resource_estimate.iterations / static_cast<double>(scene.designs.size());
-    const double cells = 1.0 * d.grid.nx * d.grid.ny;
-    out += iterations * (design_operations(scene, d) / kFactorRate + cells * kCellSeconds);
-    if (mechanism != nullptr) out += resource_estimate.frames * cells * kPointSeconds;
+  if (scene.designs.empty())
+    return {{.name = scene.statics ? "statics" : "motion", .seconds = motion + frames}};
+  const PhaseCost design{.name = "design", .seconds = design_seconds(scene), .may_end_early = true};
+  const PhaseCost outlines{.name = "verification of outlines", .seconds = outline_seconds(scene)};
+  if (scene.domain) return {design, outlines};
+
+  const bool on_cells = scene.verifies_on_cells();
+  const double finer = !scene.verify        ? 0
+                       : on_cells           ? cells_seconds(scene, resources.steps)
+                       : scene.verify->mesh ? 4 * motion
+                                            : std::pow(scene.verify->refine, 2) * motion;
+  const int cycles = scene.optimizer.max_iterations > 0 ? scene.cycle.max_cycles : 1;
+  std::vector<PhaseCost> out;
+  for (int cycle = 1; cycle <= cycles; ++cycle) {
+    out.push_back({.name = "motion", .cycle = cycle, .seconds = motion});
+    out.push_back(design);
+    out.back().cycle = cycle;
+    if (on_cells && cycles > 1)
+      out.push_back({.name = "motion on cells", .cycle = cycle, .seconds = finer});
   }
+  out.push_back(outlines);
+  const auto add = [&](const char* name, double seconds) {
+    out.push_back({.name = name, .seconds = seconds, .group = 1});
+  };
+  add("motion with the design", motion + frames);
+  add("motion with uniform material", motion);
+  if (scene.verify) add("verification with uniform material", finer);
+  if (scene.verify && !(on_cells && cycles > 1)) add("verification with the design", finer);
+  return out;
+}
+
+double expected_seconds(const Scene& scene, const Mechanism* mechanism) {
+  double out = kStart;
+  for (const PhaseCost& phase : phase_costs(scene, mechanism)) out += phase.seconds;
   return out;
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "cases/assembly/build.h"
 
 namespace flexmorph::cases {
@@ -18,10 +21,32 @@ struct StepOperations {
 /// processors (README, "Measured"). It is not valid for `minimal_coordinates`.
 StepOperations step_operations(const Scene& scene, const Mechanism& mechanism);
 
-/// Returns the expected CPU time of a run [s]: all its motions, and the largest number of
-/// iterations that its designs may take. The value is within a factor of three for the shipped
-/// cases on one core of 2020; with adaptive steps it is a lower bound.
+/// The expected cost of one phase of a run.
+struct PhaseCost {
+  std::string name;            ///< Name that the run shows: "design", "motion on cells", ...
+  int cycle = 0;               ///< Number of the cycle it belongs to, from 1; 0: no cycle.
+  double seconds = 0;          ///< Expected CPU time [s].
+  bool may_end_early = false;  ///< True for iterations, whose number is an upper bound.
+  int group = 0;               ///< Phases with the same group (not 0) may run at the same time.
+};
+
+/// The expected CPU time of an iteration of one design [s].
+struct IterationCost {
+  std::string body;        ///< Name of the designed body.
+  double plain = 0;        ///< Without constraints on widths.
+  double with_widths = 0;  ///< With constraints on widths, which need the exact outline.
+};
+
+/// Returns the expected costs of the iterations of all designs.
+std::vector<IterationCost> iteration_costs(const Scene& scene);
+
+/// Returns the phases of a run in the order in which they run, with all permitted cycles and
+/// iterations. The sum is within a factor of three for the shipped cases on one core of 2020; with
+/// adaptive steps it is a lower bound.
 /// @param mechanism  mechanism of a scene that moves, else null
+std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanism);
+
+/// Returns the expected CPU time of a run [s], the sum of phase_costs() and the start.
 double expected_seconds(const Scene& scene, const Mechanism* mechanism);
 
 }  // namespace flexmorph::cases

@@ -238,6 +238,25 @@ std::string of_all(double bytes, double all) {
   return bytes_text(bytes) + (std::isfinite(all) ? " of " + bytes_text(all) : "");
 }
 
+/// Returns the expected times of the phases of a run, with equal phases of several cycles in one
+/// number.
+std::string phases_text(const Scene& scene, const Mechanism* mechanism) {
+  std::vector<std::pair<std::string, double>> sums;
+  for (const PhaseCost& phase : phase_costs(scene, mechanism)) {
+    const auto known =
+        std::ranges::find(sums, phase.name, [](const auto& sum) { return sum.first; });
+    if (known == sums.end())
+      sums.emplace_back(phase.name, phase.seconds);
+    else
+      known->second += phase.seconds;
+  }
+  std::string out;
+  for (const auto& [name, seconds] : sums)
+    out += summary_row(out.empty() ? "time by phases" : "",
+                       name + " " + duration_text(std::max(seconds, 0.1)));
+  return out;
+}
+
 std::string disk_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine) {
   const ResourceEstimate resource_estimate = estimate_resources(scene);
   const bool most = resource_estimate.iterations > 0 ||
@@ -248,7 +267,8 @@ std::string disk_text(const Scene& scene, const Mechanism* mechanism, const Mach
                      "memory about " + of_all(resource_estimate.memory_bytes(), machine.memory) +
                          ", time " + bound + duration_text(expected_seconds(scene, mechanism)) +
                          ", disk " + (most ? "at most about " : "about ") +
-                         of_all(resource_estimate.disk_bytes(), machine.disk) + " free");
+                         of_all(resource_estimate.disk_bytes(), machine.disk) + " free") +
+         phases_text(scene, mechanism);
 }
 
 }  // namespace

@@ -77,10 +77,10 @@ mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
 
 /// Returns an observer that writes every iteration, passes it to the callback, and displays it.
 mmc::IterationObserver iteration_observer(const RunContext& run) {
-  return [&run, most = run.prepared.resource_estimate().iterations](const mmc::IterationReport& r) {
+  return [&run](const mmc::IterationReport& r) {
     if (run.folder) run.folder->add_iteration(r);
     if (run.iteration) run.iteration(r);
-    run.progress.iteration(r, most);
+    run.progress.iteration(r);
     return run.keep_running();
   };
 }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 
@@ -14,7 +15,8 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kTerminal = 0.1, kElsewhere = 30;  // time between lines [s]
+constexpr double kTerminal = 0.1, kElsewhere = 30;      // time between lines [s]
+constexpr std::chrono::milliseconds kRepetition(1000);  // time after which a line is shown again
 
 /// Returns the number of columns of the terminal; 80 if it is unknown.
 int columns() {
@@ -25,17 +27,33 @@ int columns() {
 
 }  // namespace
 
-std::string time_left(double seconds, double part) {
-  if (!(part > 0) || seconds < 0.5) return "";
-  return ", " + duration_text(seconds * (1 - std::min(1.0, part)) / part) + " left";
+Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {
+  if (terminal_ && !quiet_)
+    repetition_ = std::jthread([this](const std::stop_token& stop) { keep_showing(stop); });
 }
-
-Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
 
 Progress::Progress(std::function<void(const std::string&)> told)
     : quiet_(true), terminal_(false), told_(told ? std::move(told) : [](const std::string&) {}) {}
 
-Progress::~Progress() { end_line(); }
+Progress::~Progress() {
+  if (repetition_.joinable()) {
+    repetition_.request_stop();
+    repetition_.join();
+  }
+  end_line();
+}
+
+/// Shows the last line again with a new time while nothing else is reported, so that long steps do
+/// not look like a program that hangs.
+void Progress::keep_showing(const std::stop_token& stop) {
+  std::mutex waiting;
+  std::condition_variable_any wake;
+  std::unique_lock sleeping(waiting);
+  while (!wake.wait_for(sleeping, stop, kRepetition, [&] { return stop.stop_requested(); })) {
+    const std::lock_guard guard(lock_);
+    if (open_ && Clock::now() - shown_ >= kRepetition) print(with_time(last_));
+  }
+}
 
 void Progress::say(const std::string& text) {
   const std::lock_guard guard(lock_);
@@ -57,50 +75,56 @@ void Progress::object(const std::string& kind, const std::string& text) {
 void Progress::begin(const std::string& phase) {
   const std::lock_guard guard(lock_);
   where_.phase = phase;
-  begin_ = shown_ = Clock::now();
+  shown_ = Clock::now();
+  plan_.begin(phase, seconds());
+  // The lines of other phases follow soon; this one is silent until its end.
+  if (terminal_) line(phase, "", true);
 }
 
-double Progress::since_begin() const {
+void Progress::plan(WorkPlan phases) {
+  const std::lock_guard guard(lock_);
+  plan_ = std::move(phases);
+}
+
+double Progress::seconds() const {
   return std::chrono::duration<double>(Clock::now() - begin_).count();
 }
 
-void Progress::iteration(const mmc::IterationReport& r, double most) {
+/// Returns a text with the completed part of the run and the time that is left.
+std::string Progress::with_time(const std::string& text) const {
+  const double now = seconds();
+  const std::string left = left_text(plan_.left(now));
+  if (left.empty()) return text;
+  return text + ", " + formatted("%.0f", 100 * plan_.completed(now)) + " % of the run" + left;
+}
+
+void Progress::iteration(const mmc::IterationReport& r) {
   const std::lock_guard guard(lock_);
-  if (where_.phase != "design") {
-    where_.phase = "design";
-    begin_ = Clock::now();
-    iterations_ = 0;
-  }
+  where_.phase = "design";
   where_.body = r.problem.body;
   where_.cycle = r.cycle;
   where_.iteration = r.iteration;
-  ++iterations_;
-  ++all_;
-  std::string text = "design of " + r.problem.body + ", cycle " + std::to_string(r.cycle) +
-                     ": iteration " + std::to_string(r.iteration);
-  // With several bodies or cycles, the total of the run is added in parentheses, because the number
-  // of the iteration restarts at 1 for every body and cycle.
-  const bool alone = all_ == r.iteration;
-  text += (alone ? " of at most " : " (total " + io::to_text(all_) + " of at most ") +
-          io::to_text(most) + (alone ? "" : ")");
-  text += time_left(since_begin(), iterations_ / (iterations_ + most - all_));
+  plan_.iterate(r.problem.body, {r.iteration, r.with_widths, r.most_left, r.most_left_with_widths},
+                seconds());
+  const std::string head = "design of " + r.problem.body + ", cycle " + std::to_string(r.cycle) +
+                           ": iteration " + std::to_string(r.iteration) + " of at most " +
+                           std::to_string(r.iteration + r.most_left);
+  std::string tail;
   // The compliance is not finite if the goal contains none.
   if (std::isfinite(r.state.compliance()))
-    text += ", compliance " + formatted("%.5g", r.state.compliance());
-  text += ", volume fraction " + formatted("%.4f", r.state.volume()) + ", KKT residual " +
+    tail += ", compliance " + formatted("%.5g", r.state.compliance());
+  tail += ", volume fraction " + formatted("%.4f", r.state.volume()) + ", KKT residual " +
           formatted("%.1e", r.iterate.kkt);
-  line(text, r.iteration == 1 || r.iteration % 25 == 0);
+  line(head, tail, r.iteration == 1 || r.iteration % 25 == 0);
 }
 
 void Progress::way(const std::string& phase, double part, const std::string& words) {
   if (quiet_) return;
   const std::lock_guard guard(lock_);
+  plan_.advance(phase, part, {1 - part, 1 - part}, seconds());
   const double pause = std::chrono::duration<double>(Clock::now() - shown_).count();
   if (pause < (terminal_ ? kTerminal : kElsewhere)) return;
-  shown_ = Clock::now();
-  line(phase + ": " + words + ", " + formatted("%.0f", 100 * part) + " %" +
-           time_left(since_begin(), part),
-       true);
+  line(phase + ": " + words, "", true);
 }
 
 Failure Progress::where() const {
@@ -108,8 +132,15 @@ Failure Progress::where() const {
   return where_;
 }
 
-void Progress::line(const std::string& text, bool now) {
+/// Shows a line: `head`, the time that is left, `tail`.
+void Progress::line(const std::string& head, const std::string& tail, bool now) {
   if (quiet_ || (!terminal_ && !now)) return;
+  last_ = head;
+  print(with_time(head) + tail);
+}
+
+void Progress::print(const std::string& text) {
+  shown_ = Clock::now();
   if (terminal_) {
     // The line is cut to the width of the terminal, because a wrapped line cannot be overwritten.
     const int width = columns() - 1;

@@ -4,14 +4,18 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include "cases/results/failure.h"
+#include "cases/run/work_plan.h"
 #include "optim/mmc/cycles/esl_loop.h"
 
 namespace flexmorph::cases {
 
-/// The progress display of a run. On a terminal it is one line that is overwritten; elsewhere a
-/// line is printed at intervals. Several threads may report their motions at the same time.
+/// The progress display of a run: the phase, the part of the run that is completed, and the range
+/// of the time that is left. On a terminal it is one line that is overwritten, at least every
+/// second; elsewhere a line is printed at intervals. Several threads may report their motions at
+/// the same time.
 class Progress {
  public:
   /// Creates a display that prints on the terminal.
@@ -28,11 +32,12 @@ class Progress {
   /// coloured if the error stream is a terminal.
   void object(const std::string& kind, const std::string& text);
 
-  /// Starts a phase of the run; the remaining time is estimated from this moment on.
+  /// Sets the planned phases, from which the remaining time is estimated.
+  void plan(WorkPlan phases);
+  /// Starts a phase of the run.
   void begin(const std::string& phase);
   /// Shows a design iteration.
-  /// @param most  largest number of iterations of the whole run: all bodies, stages and cycles
-  void iteration(const mmc::IterationReport& report, double most);
+  void iteration(const mmc::IterationReport& report);
   /// Shows the progress of a phase.
   /// @param part   completed fraction of the phase, 0..1
   /// @param words  position of the phase in words: "t = 0.3 of 1 s"
@@ -43,22 +48,22 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  double since_begin() const;
-  void line(const std::string& text, bool now);  // the lock has to be held
+  // The lock has to be held by the callers of these functions.
+  double seconds() const;
+  std::string with_time(const std::string& text) const;
+  void line(const std::string& head, const std::string& tail, bool now);
+  void print(const std::string& text);
   void end_line();
+  void keep_showing(const std::stop_token& stop);
 
   mutable std::mutex lock_;
   bool quiet_, terminal_, open_ = false;
   std::function<void(const std::string&)> told_;  // empty: messages are printed
   Failure where_;
-  double all_ = 0, iterations_ = 0;  // iterations of the run, and since the phase began
+  WorkPlan plan_;
   Clock::time_point begin_ = Clock::now(), shown_ = {};
+  std::string last_;         // text of the last line without the time
+  std::jthread repetition_;  // shows the line again while nothing is reported (terminals only)
 };
-
-/// Returns ", 45 s left", estimated from the elapsed time and the completed fraction; returns an
-/// empty text if too little is completed.
-/// @param seconds  elapsed time [s]
-/// @param part     completed fraction, 0..1
-std::string time_left(double seconds, double part);
 
 }  // namespace flexmorph::cases

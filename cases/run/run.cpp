@@ -137,6 +137,8 @@ int run_case(const RunOptions& options) {
   if (scene.output.vtk) folder.write_text("paraview.py", kParaViewScript);
   end_on_signals();
   Progress progress(options.quiet);
+  progress.plan({phase_costs(scene, scene.domain ? nullptr : &prepared.mechanism()),
+                 iteration_costs(scene), options.threads});
   progress.say(scene.title + ": The results are written to " + directory);
   if (options.resume && scene.statics)
     progress.say(

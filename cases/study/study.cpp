@@ -165,10 +165,11 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const double part = static_cast<double>(++ended) / static_cast<double>(wanted.size());
+    const double left = seconds * (1 - part) / part;
     const size_t before = variants.size() - wanted.size();
     say(options, std::to_string(before + ended) + "/" + std::to_string(variants.size()) + " " +
                      result.name + ": " + result.words() +
-                     (part < 1 ? time_left(seconds, part) : ""));
+                     (part < 1 ? left_text({left, left}) : ""));
     if (result.status == "failed" && !options.keeps_failures) {
       out.exit_code = 3;
       std::fprintf(stderr, "flexmorph: %s: %s\n", result.name.c_str(), result.message.c_str());

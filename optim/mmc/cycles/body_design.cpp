@@ -17,25 +17,31 @@ constexpr double kWidthTolerance = 0.99;
 /// The limits on the cost of the stages of a cycle, in equal shares.
 class StageBudgets {
  public:
-  StageBudgets(const optim::Settings& settings, int n_stages, int n_shares)
-      : settings_(settings), n_stages_(n_stages), n_shares_(n_shares) {}
+  /// @param widths  true if the last stage has constraints on widths
+  StageBudgets(const optim::Settings& settings, int n_stages, int n_shares, bool widths)
+      : settings_(settings), n_stages_(n_stages), n_shares_(n_shares), widths_(widths) {}
 
   /// Returns the share of the next stage.
   /// @param stage  index among the stages from one start, from 0
   StageBudget of(int stage) {
     ++used_;
+    const bool last = stage == n_stages_ - 1;
     const auto until = [&](int k) { return settings_.max_iterations * k / n_stages_; };
     const auto solves =
         static_cast<int>(static_cast<double>(settings_.max_evaluations) * used_ / n_shares_);
     return {until(stage + 1) - until(stage),
-            settings_.max_evaluations > 0 ? std::max(1, solves) : 0};
+            settings_.max_evaluations > 0 ? std::max(1, solves) : 0,
+            (n_shares_ - used_) * settings_.max_iterations / n_stages_, last && widths_,
+            widths_ && !last ? until(n_stages_) - until(n_stages_ - 1) : 0};
   }
 
   /// Returns the first 60 % of a share, after which unloaded components are removed again.
   StageBudget begin_of(StageBudget share) const {
     constexpr double kBegin = 0.6;
     const double rest = 1 - kBegin;
-    share.iterations = static_cast<int>(kBegin * share.iterations);
+    const int all = share.iterations;
+    share.iterations = static_cast<int>(kBegin * all);
+    share.later += all - share.iterations;
     if (share.solves > 0)
       share.solves = std::max(
           1, share.solves - static_cast<int>(rest * settings_.max_evaluations / n_shares_));
@@ -45,6 +51,7 @@ class StageBudgets {
  private:
   const optim::Settings& settings_;
   int n_stages_, n_shares_, used_ = 0;
+  bool widths_;
 };
 
 size_t most_bands(std::span<const Subproblem> parts) {
@@ -84,7 +91,7 @@ FromStart staged(StageRunner& run, int cycle) {
   const std::vector<std::vector<Design>> starts = starts_of(parts, cycle);
   const int n_shares =
       static_cast<int>(starts.size()) * (n_stages - (wide ? 1 : 0)) + (wide ? 1 : 0);
-  StageBudgets shares(run.settings().optimizer, n_stages, n_shares);
+  StageBudgets shares(run.settings().optimizer, n_stages, n_shares, wide);
   std::optional<FromStart> best;
   for (size_t s = 0; s < starts.size() && run.is_running(); ++s) {
     StageResult now = first_designs(parts);
@@ -108,7 +115,7 @@ FromStart staged(StageRunner& run, int cycle) {
     // The constraints on widths cut some bars off. Their dangling ends are removed, and the
     // optimizer uses the material elsewhere.
     now = without_unloaded_components(run, now, false);
-    now = last_stage(run, now, {share.iterations - begin.iterations, share.solves});
+    now = last_stage(run, now, {share.iterations - begin.iterations, share.solves, 0, true});
     now = without_unloaded_components(run, now, true);
   }
   return *best;

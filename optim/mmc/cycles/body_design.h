@@ -19,6 +19,11 @@ struct IterationReport {
   int cycle = 1;               ///< Number of the cycle, from 1.
   int iteration = 0;           ///< Number of the iteration over all stages of the cycle, from 1.
   int evaluations = 0;         ///< Number of evaluations in the cycle so far.
+  /// Iterations of this body in the cycle so far that had constraints on widths, which cost more.
+  int with_widths = 0;
+  /// Largest numbers of iterations of this body that follow in the cycle: of all, and of those with
+  /// constraints on widths.
+  int most_left = 0, most_left_with_widths = 0;
 
   /// Row of the optimizer. Its x belongs to this body alone; all other values belong to the
   /// combined problem of all bodies. CPU seconds of the combined problem are in the row of the

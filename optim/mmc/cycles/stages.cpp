@@ -20,6 +20,11 @@ void begin_gently(optim::Settings& settings) {
     settings.options.try_emplace("asyinit", kAsymptotes);
 }
 
+StageBudget with_gentle(StageBudget share, bool gentle) {
+  share.gentle = gentle;
+  return share;
+}
+
 }  // namespace
 
 StageRunner::StageRunner(std::span<const LoadedBody> bodies, int cycle,
@@ -30,6 +35,9 @@ StageResult StageRunner::optimize(const StageResult& from, std::vector<Formulati
                                   const StageBudget& share) {
   if (share.iterations <= 0 || !is_running_ || (share.solves > 0 && evaluations_ >= share.solves))
     return from;
+  most_left_ = share.iterations + share.later;
+  in_widths_ = share.widths;
+  most_left_with_widths_ = share.widths ? most_left_ : share.later_with_widths;
   optim::Settings settings = settings_.optimizer;
   settings.max_iterations = share.iterations;
   settings.plateau = true;
@@ -53,6 +61,11 @@ StageResult StageRunner::optimize(const StageResult& from, std::vector<Formulati
 
 bool StageRunner::see(CombinedProblem& whole, const optim::Iterate& iterate) {
   ++iterations_;
+  most_left_ = std::max(0, most_left_ - 1);
+  if (in_widths_) {
+    ++with_widths_;
+    most_left_with_widths_ = most_left_;
+  }
   for (size_t k = 0; k < parts_.size(); ++k) {
     MmcProblem& state = whole.states[k];
     const VectorXd x = whole.part_of(*iterate.x, k);
@@ -75,7 +88,8 @@ void StageRunner::see(const Subproblem& p, MmcProblem& state, const optim::Itera
   own.x = &state.x();
   if (!first) own.seconds = 0;
   if (observe_ && !observe_({p.problem, cycle_, iterations_, evaluations_ + iterate.evaluations,
-                             own, state, state.value(), p.loads, wanted ? &crisp : nullptr}))
+                             with_widths_, most_left_, most_left_with_widths_, own, state,
+                             state.value(), p.loads, wanted ? &crisp : nullptr}))
     is_running_ = false;
   state.clear_seconds();
 }
@@ -102,7 +116,7 @@ StageResult at_band(StageRunner& run, const StageResult& from, size_t band,
 StageResult with_erosion(StageRunner& run, const StageResult& from, const StageBudget& share) {
   std::vector<Formulation> formulations;
   for (const Subproblem& p : run.parts()) formulations.push_back(eroded(p.problem));
-  return run.optimize(from, std::move(formulations), {share.iterations, share.solves, true});
+  return run.optimize(from, std::move(formulations), with_gentle(share, true));
 }
 
 StageResult without_unloaded_components(StageRunner& run, const StageResult& from,
@@ -126,7 +140,7 @@ StageResult last_stage(StageRunner& run, const StageResult& from, const StageBud
   for (const Subproblem& p : run.parts()) formulations.push_back(last_formulation(p.problem));
   const bool gentle = std::any_of(formulations.begin(), formulations.end(),
                                   [](const Formulation& f) { return f.outline.has_value(); });
-  return run.optimize(from, std::move(formulations), {share.iterations, share.solves, gentle});
+  return run.optimize(from, std::move(formulations), with_gentle(share, gentle));
 }
 
 bool is_better(const optim::Result& a, const optim::Result& b, double feasibility) {

@@ -28,7 +28,10 @@ struct StageResult {
 struct StageBudget {
   int iterations = 0;   ///< Largest number of iterations.
   int solves = 0;       ///< Number of state solves of the cycle at which it ends; 0: no limit.
-  bool gentle = false;  ///< True if the stage begins with small steps.
+  int later = 0;        ///< Largest number of iterations of the stages that follow.
+  bool widths = false;  ///< True if the stage has constraints on widths, as all later ones have.
+  int later_with_widths = 0;  ///< Number of later iterations with constraints on widths.
+  bool gentle = false;        ///< True if the stage begins with small steps.
 };
 
 /// Runs the optimizer for the stages of one cycle, reports every iterate and counts iterations and
@@ -68,6 +71,9 @@ class StageRunner {
   const DesignSettings& settings_;
   const IterationObserver& observe_;
   int iterations_ = 0, evaluations_ = 0;
+  int most_left_ = 0, most_left_with_widths_ = 0;  // iterations that the budgets permit
+  int with_widths_ = 0;                            // iterations so far
+  bool in_widths_ = false;
   bool is_running_ = true;
 };
 

@@ -14,12 +14,83 @@ using nlohmann::json;
 using test::Ended;
 using test::Words;
 
-TEST(TimeLeft, FollowsFromThePartThatIsDone) {
-  EXPECT_TRUE(contains(time_left(10, 0.25), " 30 s "));
-  EXPECT_TRUE(contains(time_left(3600, 0.5), " 60 min "));
-  EXPECT_TRUE(contains(time_left(10, 1), " 0 s "));
-  EXPECT_EQ(time_left(10, 0), "");     // nothing has been done yet
-  EXPECT_EQ(time_left(0.1, 0.5), "");  // too short for an estimate
+TEST(LeftText, ShowsARangeOrOneNumber) {
+  EXPECT_TRUE(contains(left_text({30, 32}), " 31 s "));
+  EXPECT_TRUE(contains(left_text({3600, 3600}), " 60 min "));
+  EXPECT_TRUE(contains(left_text({10, 25}), " 10 to 25 s "));
+  EXPECT_TRUE(contains(left_text({40, 600}), " 40 s to 10 min "));
+  EXPECT_EQ(left_text({0, 0}), "");  // nothing is known
+}
+
+/// The phases of a run with two permitted cycles: 2 s of motion, 10 s of design in every cycle, and
+/// two final motions of 4 s that may run at the same time.
+std::vector<PhaseCost> two_cycles() {
+  std::vector<PhaseCost> out;
+  for (const int cycle : {1, 2}) {
+    out.push_back({.name = "motion", .cycle = cycle, .seconds = 2});
+    out.push_back({.name = "design", .cycle = cycle, .seconds = 10, .may_end_early = true});
+  }
+  out.push_back({.name = "motion with the design", .seconds = 4, .group = 1});
+  out.push_back({.name = "motion with uniform material", .seconds = 4, .group = 1});
+  return out;
+}
+
+// A machine that is three times as slow as expected, and a second cycle that is not needed. The
+// true time that is left lies in every range.
+TEST(WorkPlan, LearnsTheSpeedOfThisMachine) {
+  WorkPlan plan(two_cycles(), {}, 1);
+  plan.begin("motion", 0);
+  plan.advance("motion", 0.5, {0.5, 0.5}, 3);
+  plan.advance("design", 1, {65, 99}, 6);
+  // 27 s of design and 24 s of final motions follow, and perhaps a cycle of 36 s.
+  plan.advance("design", 30, {45.5, 70}, 15);
+  SecondsRange left = plan.left(15);
+  EXPECT_LT(left.least, 21 + 24);
+  EXPECT_GT(left.most, 21 + 24);
+  EXPECT_LT(left.most, 3 * 60);
+  plan.advance("design", 90, {6.5, 10}, 33);
+  plan.begin("motion with the design", 36);  // the loads agree: no second cycle
+  left = plan.left(36);
+  EXPECT_LT(left.least, 24);
+  EXPECT_GT(left.most, 24);
+  EXPECT_LT(left.most, 3 * left.least);  // no cycle is open
+  plan.advance("motion with the design", 0.5, {0.5, 0.5}, 42);
+  plan.advance("motion with the design", 1, {0, 0}, 48);
+  plan.advance("motion with uniform material", 0.01, {0.99, 0.99}, 48);
+  plan.advance("motion with uniform material", 0.5, {0.5, 0.5}, 54);
+  left = plan.left(54);
+  EXPECT_LT(left.least, 6);
+  EXPECT_GT(left.most, 6);
+  EXPECT_LT(left.most, 1.25 * left.least);
+  EXPECT_NEAR(plan.completed(54), 0.9, 0.02);
+}
+
+// Iterations with constraints on widths cost five times as much, and half of the other iterations
+// were not needed: the plan counts costs, not iterations.
+TEST(WorkPlan, CountsTheCostOfIterations) {
+  std::vector<PhaseCost> design = {{.name = "design", .seconds = 14, .may_end_early = true}};
+  WorkPlan plan(design, {{"plate", 0.1, 0.5}}, 1);
+  plan.iterate("plate", {1, 0, 59, 20}, 0.1);
+  plan.iterate("plate", {20, 0, 40, 20}, 2);  // 2 s of plain and 10 s of costly iterations follow
+  SecondsRange left = plan.left(2);
+  EXPECT_LT(left.least, 12);
+  EXPECT_GT(left.most, 12);
+  plan.iterate("plate", {30, 10, 10, 10}, 7);  // the plain ones ended early
+  left = plan.left(7);
+  EXPECT_LT(left.least, 5);
+  EXPECT_GT(left.most, 5);
+  EXPECT_LT(left.most, 2.5 * left.least);
+}
+
+// Without any progress the range covers a factor of two to both sides, and never ends before now.
+TEST(WorkPlan, KnowsLittleAtTheStart) {
+  const WorkPlan plan(two_cycles(), {}, 2);
+  const SecondsRange left = plan.left(0);
+  EXPECT_LT(left.least, 2 + 10 + 4);
+  EXPECT_GT(left.most, 2 * (2 + 10) + 4);
+  EXPECT_LE(left.most, 3.0001 * left.least);
+  EXPECT_EQ(plan.completed(0), 0);
+  EXPECT_EQ(WorkPlan().left(5).most, 0);
 }
 
 TEST(FailureOf, KnowsWhatTheErrorKnows) {
