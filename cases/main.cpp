@@ -19,6 +19,7 @@
 #include "cases/process/processor.h"
 #include "cases/results/schema.h"
 #include "cases/run/corrections.h"
+#include "cases/run/modes.h"
 #include "cases/run/run.h"
 #include "cases/run/verify_part.h"
 #include "cases/scene/version.h"
@@ -189,7 +190,7 @@ Command stability_command(CLI::App& app, StabilityOptions& options) {
 
 /// Options of the command `keys`.
 struct KeysOptions {
-  std::string table, renewed;  ///< Printed table and updated file; empty: all tables, no file.
+  std::string table, renewed;  ///< Table or word, and updated file; empty: all tables, no file.
   bool schema = false, markdown = false;
 };
 
@@ -213,8 +214,10 @@ std::string keys_text(const KeysOptions& options) {
 
 Command keys_command(CLI::App& app, KeysOptions& options) {
   CLI::App* command = add_command(app, "keys", "prints the keys of case files", "body.flow");
-  add_value(*command, "table", options.table, "TABLE",
-            "prints only this table, such as time, body.flow or top");
+  add_value(
+      *command, "word", options.table, "WORD",
+      "prints only this table, such as time, body.flow or top, or else the keys with this word "
+      "in their names and descriptions");
   command->add_flag("--schema", options.schema, "prints a JSON schema for editors");
   command->add_flag("--markdown", options.markdown, "prints the reference in cases/README.md");
   add_value(*command, "--renew", options.renewed, "FILE", "updates the reference in this file");
@@ -287,6 +290,22 @@ Command check_command(CLI::App& app, RunOptions& options) {
       true);
 }
 
+Command modes_command(CLI::App& app, ModesOptions& options) {
+  CLI::App* modes = add_command(app, "modes", "computes natural frequencies of the mechanism",
+                                "plate_pendulum --time 0.5 --count 6");
+  add_case(*modes, options.case_name, options.overrides);
+  add_value(*modes, "--time", options.time, "NUMBER",
+            "time of the arrangement [s]; load factor of a static analysis (default 0)");
+  add_number(*modes, "--count", options.count, 1, 1000,
+             "largest number of modes, rigid modes included");
+  modes->add_flag("--stopped", options.stopped,
+                  "drives and material flow stand still at their positions of this time");
+  add_value(*modes, "-o,--output", options.directory, "FOLDER",
+            "folder of the results (default runs/NAME_modes)");
+  return printing(
+      modes, [&] { return modes_of_case(options); }, true);
+}
+
 Command certify_command(CLI::App& app, CertifyOptions& options) {
   CLI::App* certify = add_command(app, "certify", "computes how far designs are from an optimum",
                                   "runs/slider_crank_designed");
@@ -314,11 +333,7 @@ Command verify_command(CLI::App& app, VerifyOptions& options) {
 }
 
 Command cases_command(CLI::App& app) {
-  return printing(add_command(app, "cases", "lists the shipped cases", ""), [] {
-    std::string out;
-    for (const std::string& name : shipped_cases()) out += name + "\n";
-    return out;
-  });
+  return printing(add_command(app, "cases", "lists the shipped cases", ""), list_of_cases);
 }
 
 Command completion_command(CLI::App& app, std::string& shell) {
@@ -336,6 +351,7 @@ int parse_and_run(int argc, char** argv) {
   app.require_subcommand(1);
   RunOptions run;
   VerifyOptions verify;
+  ModesOptions modes;
   CompareOptions compare;
   SweepOptions sweep;
   AccuracyOptions accuracy;
@@ -346,6 +362,7 @@ int parse_and_run(int argc, char** argv) {
   std::string shell;
   std::vector<Command> commands = {run_command(app, run),
                                    check_command(app, run),
+                                   modes_command(app, modes),
                                    compare_command(app, compare, cycles),
                                    sweep_command(app, sweep),
                                    accuracy_command(app, accuracy),

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "geometry/base.h"
@@ -75,11 +76,35 @@ size_t location_of(const CsvTable& table, const std::string& column) {
                      joined(table.columns, ", ", "'"));
 }
 
+/// Returns the number of a text, or NaN if the text is not a number.
 double number_of(std::string_view text) {
   double value = 0;
   const char* const end = text.data() + text.size();
   const auto [at, error] = std::from_chars(text.data(), end, value);
   return error == std::errc() && at == end ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Returns the number of a cell, which may have a decimal comma.
+double number_of(std::string_view cell, bool decimal_comma) {
+  if (!decimal_comma || cell.find(',') == std::string_view::npos) return number_of(cell);
+  std::string with_point(cell);
+  std::replace(with_point.begin(), with_point.end(), ',', '.');
+  // Of two marks in one cell, one separates thousands.
+  return number_of(cell.find('.') == std::string_view::npos ? with_point : std::string());
+}
+
+bool has(std::string_view text, char c) { return text.find(c) != std::string_view::npos; }
+
+/// Returns the position after the last row in which a cell is not empty.
+char* end_of_rows(std::string& text, char separator) {
+  const size_t last = text.find_last_not_of(std::string(" \t\r\n\"") + separator);
+  if (last == std::string::npos) return text.data();
+  return text.data() + std::min(text.find('\n', last), text.size());
+}
+
+/// Returns the location of a row: "file:line". The header is in line 1.
+std::string location_of_row(const std::string& path, size_t row) {
+  return path + ":" + std::to_string(row + 2);
 }
 
 }  // namespace
@@ -100,23 +125,57 @@ std::vector<std::string> CsvTable::texts(const std::string& column) const {
 std::vector<double> CsvTable::numbers(const std::string& column) const {
   std::vector<double> out;
   out.reserve(n_rows());
-  std::string with_point;
-  for (size_t i = location_of(*this, column); i < cells_.size(); i += columns.size()) {
-    std::string_view cell = cells_[i];
-    if (decimal_comma && cell.find(',') != std::string_view::npos) {
-      with_point = cell;
-      std::replace(with_point.begin(), with_point.end(), ',', '.');
-      cell = with_point;
-    }
-    out.push_back(number_of(cell));
-  }
+  for (size_t i = location_of(*this, column); i < cells_.size(); i += columns.size())
+    out.push_back(number_of(cells_[i], decimal_comma));
   return out;
+}
+
+std::vector<double> CsvTable::all_numbers(const std::string& column) const {
+  std::vector<double> out = numbers(column);
+  const auto bad = std::find_if(out.begin(), out.end(), [](double x) { return std::isnan(x); });
+  if (bad == out.end()) return out;
+  const auto row = static_cast<size_t>(bad - out.begin());
+  const std::string cell = texts(column)[row];
+  std::string why = cell.empty() ? "the cell of the column '" + column + "' is empty"
+                                 : "'" + cell + "' is not a number";
+  if (has(cell, ',') && has(cell, '.'))
+    why += "; a number has one decimal mark and no mark between thousands";
+  else if (has(cell, ',') && !decimal_comma)
+    why +=
+        "; numbers may have a decimal comma only if the cells are separated by semicolons or "
+        "tabulators";
+  throw Error::input(location_of_row(path_, row) + ": " + why);
+}
+
+void CsvTable::refuse_mixed_marks() const {
+  if (!decimal_comma) return;
+  constexpr size_t kNotFound = std::string::npos;
+  size_t comma = kNotFound, point = kNotFound;  // first cells with each decimal mark
+  for (size_t i = 0; i < cells_.size() && (comma == kNotFound || point == kNotFound); ++i) {
+    size_t& first = has(cells_[i], ',') ? comma : point;
+    if (first == kNotFound && (has(cells_[i], ',') || has(cells_[i], '.')) &&
+        !std::isnan(number_of(cells_[i], true)))
+      first = i;
+  }
+  if (comma == kNotFound || point == kNotFound) return;
+  const size_t later = std::max(comma, point), earlier = std::min(comma, point);
+  const auto text = [&](size_t i) {
+    std::string out = "'";
+    out.append(cells_[i]).append("' has a decimal ").append(i == comma ? "comma" : "point");
+    return out;
+  };
+  throw Error::input(location_of_row(path_, later / columns.size()) + ": " + text(later) +
+                     ", but " + text(earlier) + " in line " +
+                     std::to_string(earlier / columns.size() + 2) +
+                     "; all numbers of a table have the same decimal mark, and no mark between "
+                     "thousands");
 }
 
 CsvTable read_csv(const std::string& path) {
   CsvTable out;
   out.text_ = std::make_shared<std::string>(read_regular_file(path, "a table"));
-  char *line = out.text_->data(), *const end = line + out.text_->size();
+  out.path_ = path;
+  char *line = out.text_->data(), *end = line + out.text_->size();
   if (out.text_->starts_with("\xEF\xBB\xBF")) line += 3;  // skips a byte-order mark
   char separator = ',';
   for (int number = 1; line < end; ++number) {
@@ -130,16 +189,19 @@ CsvTable read_csv(const std::string& path) {
       std::vector<std::string_view> header;
       add_cells(line, line_end, separator, header);
       out.columns.assign(header.begin(), header.end());
-    } else if (line == line_end && end - next <= 1) {
-      break;  // an empty line at the end
+      end = std::max(next, end_of_rows(*out.text_, separator));
     } else if (const size_t n = add_cells(line, line_end, separator, out.cells_);
                n != out.columns.size()) {
-      throw Error::input(path + ":" + std::to_string(number) + ": this row has " +
-                         std::to_string(n) + " values, but the header has " +
-                         std::to_string(out.columns.size()));
+      std::string why = path + ":" + std::to_string(number) + ": this row has " +
+                        std::to_string(n) + " values, but the header has " +
+                        std::to_string(out.columns.size());
+      if (n > out.columns.size() && separator == ',')
+        why += "; numbers with a decimal comma need semicolons or tabulators between the cells";
+      throw Error::input(why);
     }
     line = next + (next < end ? 1 : 0);
   }
+  out.refuse_mixed_marks();
   return out;
 }
 

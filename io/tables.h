@@ -86,17 +86,23 @@ class CsvTable {
   /// Returns the numbers of a column; NaN where a cell is empty or not a number.
   /// @throws Error (input) as texts().
   std::vector<double> numbers(const std::string& column) const;
+  /// Returns the numbers of a column in which every cell is a number.
+  /// @throws Error (input) as texts(), or with file, line and the first cell that is not a number.
+  std::vector<double> all_numbers(const std::string& column) const;
 
  private:
+  void refuse_mixed_marks() const;
   friend CsvTable read_csv(const std::string& path);
+  std::string path_;                     // path of the file, for messages
   std::shared_ptr<std::string> text_;    // text of the file, into which the cells point
   std::vector<std::string_view> cells_;  // row by row
 };
 /// Returns a table from a file. Cells are separated by commas, or, if the header has more of them,
-/// by semicolons or tabulators; then numbers may have decimal commas. A byte-order mark and spaces
-/// around cells are ignored.
+/// by semicolons or tabulators; then numbers may have decimal commas. A byte-order mark, spaces
+/// around cells and rows without contents at the end of the file are ignored.
 /// @throws Error (input) when the file cannot be read, or with file and line when a row has another
-///         length than the header.
+///         length than the header, or when one number has a decimal comma and another one a decimal
+///         point.
 CsvTable read_csv(const std::string& path);
 
 /// Returns rows as text with padded columns for a terminal; the first row is the header.

@@ -79,7 +79,7 @@ answers(0 "20000 -LE benchmark|service|long|attack|unit"
 answers(0 "20000 -R B -L unit|service -LE attack" ${ready} ${tests_run} -L unit -R B -L service -LE attack)
 answers(1 "apt-get install --no-install-recommends g++ cmake" ${with} INSTALLED=no FREE=9000000
         ${cases_run} short_beam)
-answers(1 "nlohmann-json3-dev libgtest-dev" ${with} INSTALLED=no FREE=9000000 ${tests_run})
+answers(1 "libspectra-dev libgtest-dev" ${with} INSTALLED=no FREE=9000000 ${tests_run})
 file(REMOVE_RECURSE "${tree}/build")  # existing build output reduces the required space
 answers(1 "3 MB are free in ${tree}, and 4000 MB are needed" ${with} INSTALLED=all FREE=3000 ${tests_run})
 answers(1 "3 MB are free in ${tree}, and 2000 MB are needed" ${with} INSTALLED=all FREE=3000

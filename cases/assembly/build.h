@@ -27,6 +27,10 @@ struct Mechanism {
   std::vector<fem::MovingRoot> moving_roots;
   fem::MotionSettings motion;  ///< Settings of the motion.
   std::string start_text;      ///< Text about the start if the program chooses it; otherwise empty.
+
+  /// Text about the initial positions if others were found than those near the given ones;
+  /// otherwise empty (fem::RigidKinematics::remark()).
+  std::string assembly_text;
 };
 
 /// A mesh of a run that can differ from that of the scene (see Verify). The lengths at which

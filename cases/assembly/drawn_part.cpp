@@ -27,8 +27,9 @@ Region domain_of(const Scene& scene, const BodyDesign& design) {
   return {corners_of({{g.x0, g.y0}, {g.x0 + g.width, g.y0 + g.height}}), {}};
 }
 
-/// Returns the layers of a drawing that can contain outlines.
-std::vector<std::string> outline_layers(const std::string& path) {
+/// Returns the layers of a drawing that can contain outlines, and appends notes about layers of
+/// dimensions and texts, which are ignored.
+std::vector<std::string> outline_layers(const std::string& path, std::vector<std::string>& notes) {
   std::vector<std::string> all = io::layers_of_dxf(path), out;
   const auto has = [&](const char* name) {
     return std::find(all.begin(), all.end(), name) != all.end();
@@ -38,8 +39,12 @@ std::vector<std::string> outline_layers(const std::string& path) {
     if (has("HOLES")) out.emplace_back("HOLES");
     return out;
   }
-  for (const std::string& name : all)
-    if (name != "DOMAIN" && name != "SUPPORTS" && name != "LOADS") out.push_back(name);
+  for (const std::string& name : all) {
+    if (io::is_annotation_layer(name))
+      notes.push_back(path + ": the layer '" + name + "' of dimensions or texts is ignored");
+    else if (name != "DOMAIN" && name != "SUPPORTS" && name != "LOADS")
+      out.push_back(name);
+  }
   return out;
 }
 
@@ -47,18 +52,21 @@ double thickness_of(const Scene& scene, const BodyDesign& design) {
   return scene.domain ? scene.domain->thickness : scene.body(design.body).thickness;
 }
 
-std::vector<Ring> read_rings(const std::string& path, double thickness) {
+io::DrawnOutlines read_rings(const std::string& path, double thickness) {
   std::string type = std::filesystem::path(path).extension().string();
   std::transform(type.begin(), type.end(), type.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
-  if (type == ".step" || type == ".stp") return io::read_step_outline(path, thickness);
+  if (type == ".step" || type == ".stp") return {io::read_step_outline(path, thickness), {}};
   if (type != ".dxf") throw Error::input(path + ": a part is a .dxf, .step or .stp file");
+  std::vector<std::string> notes;
   io::DrawingSettings settings;
   settings.needs_unit = "set $INSUNITS in the drawing";
-  settings.layers = outline_layers(path);
+  settings.layers = outline_layers(path, notes);
   try {
-    return io::read_drawing(path, settings);
+    io::DrawnOutlines out = io::read_drawing(path, settings);
+    out.notes.insert(out.notes.begin(), notes.begin(), notes.end());
+    return out;
   } catch (const Error& error) {
     if (settings.layers.empty()) throw;
     throw Error::input(std::string(error.what()) + " (read from the layers " +
@@ -228,9 +236,9 @@ double area_of(const std::vector<Nested>& all) {
 
 }  // namespace
 
-std::vector<Region> read_part(const std::string& path, const Scene& scene,
-                              const BodyDesign& design) {
-  std::vector<Ring> rings = read_rings(path, thickness_of(scene, design));
+DrawnPart read_part(const std::string& path, const Scene& scene, const BodyDesign& design) {
+  io::DrawnOutlines outlines = read_rings(path, thickness_of(scene, design));
+  std::vector<Ring>& rings = outlines.rings;
   const Region domain = domain_of(scene, design);
   try {
     check_size(rings, domain, design.body);
@@ -244,7 +252,7 @@ std::vector<Region> read_part(const std::string& path, const Scene& scene,
       throw Error::input(io::to_text(100 * lost / drawn, 3) + " % of its area of " +
                          io::to_text(drawn, 4) + " m2 lie outside of the design domain of '" +
                          design.body + "'");
-    return out;
+    return {std::move(out), std::move(outlines.notes)};
   } catch (const Error& error) {
     throw Error::input(path + ": " + error.what());
   }

@@ -303,6 +303,7 @@ Mechanism build_mechanism(const Scene& scene, const MeshChoice& mesh,
     const fem::RigidKinematics kinematics = rigid ? *rigid : rigid_kinematics(scene);
     fem::RigidMotion motion(kinematics);
     out.motion.body_poses = fem::rigid_configuration(kinematics);
+    out.assembly_text = motion.kinematics().remark();
     set_start(scene, &motion, out);
   } else {
     location_alone(scene, out.motion);

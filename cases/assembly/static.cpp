@@ -229,6 +229,26 @@ std::vector<HeldOrLoaded> static_locations(const Scene& scene, const Grid& grid,
   return locations;
 }
 
+std::vector<LocatedNodes> located_nodes(const Scene& scene, const Grid& grid,
+                                        std::span<const signed char> outside) {
+  const NodeFinder find(scene, grid, outside);
+  std::vector<LocatedNodes> out;
+  const auto add = [&](const std::string& what, const NodeRegion& region, const std::string& path) {
+    std::vector<Vec2> points;
+    for (const int node : find.at(region, path).nodes)
+      points.push_back(grid.node_position(node / (grid.ny + 1), node % (grid.ny + 1)));
+    out.push_back({what, static_cast<int>(points.size()), bounds_of(points)});
+  };
+  const Domain& domain = *scene.domain;
+  for (size_t s = 0; s < domain.supports.size(); ++s)
+    add("support " + std::to_string(s + 1), domain.supports[s].location, support_path(s));
+  for (size_t l = 0; l < domain.loads.size(); ++l)
+    for (size_t f = 0; f < domain.loads[l].forces.size(); ++f)
+      add("load '" + domain.loads[l].name + "'", domain.loads[l].forces[f].location,
+          force_path(l, f));
+  return out;
+}
+
 std::vector<LoadOnVoid> loads_on_void(const Scene& scene, const mmc::BodyProblem& problem,
                                       const VectorXd& fractions) {
   constexpr double kMinMaterial = 0.5;  // least material around a loaded node [cells]

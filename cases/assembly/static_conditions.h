@@ -20,6 +20,16 @@ struct StaticConditions {
 ///         void regions cannot.
 StaticConditions static_conditions(const Scene& scene, const Grid& grid,
                                    std::span<const signed char> outside);
+/// The nodes of a support or of a force of a static scene.
+struct LocatedNodes {
+  std::string what;  ///< Name for messages: "support 1", "load 'middle'".
+  int count = 0;     ///< Number of nodes.
+  Box extent;        ///< Bounding box of the nodes [m].
+};
+/// Finds the nodes of all supports and forces of a static scene.
+/// @throws Error (input) as static_conditions() does.
+std::vector<LocatedNodes> located_nodes(const Scene& scene, const Grid& grid,
+                                        std::span<const signed char> outside);
 /// A load case that acts partly where a design has no material.
 struct LoadOnVoid {
   std::string name;  ///< Name of the load case.

@@ -4,14 +4,17 @@
 
 #include "cases/assembly/build.h"
 #include "cases/check/check_cost.h"
+#include "cases/check/check_modes.h"
 #include "cases/check/plausibility.h"
 #include "cases/check/ready.h"
+#include "cases/check/static_nodes.h"
 #include "cases/scene/design/goal.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/joints/row.h"
 #include "cases/scene/read.h"
 #include "fem/dynamics/starts/rigid_motion.h"
+#include "fem/solve/redundancy.h"
 #include "geometry/text.h"
 #include "io/files.h"
 
@@ -196,11 +199,14 @@ void describe_mechanism(const Scene& scene, const fem::RigidKinematics& rigid,
     out << row("rigid bodies", std::to_string(scene.rigid_bodies.size()) + " (" + names + "), " +
                                    std::to_string(4 * scene.rigid_bodies.size()) + " unknowns, " +
                                    io::to_text(mass, 6) + " kg");
-  const int before = fem::undriven_degrees_of_freedom(rigid),
-            after = fem::RigidMotion(rigid).degrees_of_freedom();
+  const fem::RigidMotion motion(rigid);
+  const int before = fem::undriven_degrees_of_freedom(rigid), after = motion.degrees_of_freedom();
   out << row("degrees of freedom", "rigid mechanism: " + std::to_string(before) +
                                        " without the drives of joints and flows, " +
                                        std::to_string(after) + " with these drives");
+  if (const std::vector<std::string> joints = fem::redundant_joints(motion.kinematics().model());
+      !joints.empty())
+    out << row("redundant joints", joined(joints) + "; their forces are not unique");
   if (!scene.trajectory) return;
   const TargetTrajectory& path = *scene.trajectory;
   std::string drives;
@@ -258,11 +264,13 @@ void describe_static(const PreparedCase& prepared, std::ostringstream& out,
   const Grid& g = d.grid;
   out << row("plate " + domain.name, "static, " + std::to_string(g.nx) + " x " +
                                          std::to_string(g.ny) + " cells" + text_of(domain.shape));
+  out << drawing_text(domain);
   out << row("supports", std::to_string(domain.supports.size()));
   out << row("loads", std::to_string(domain.loads.size()) +
                           (loads ? ", solved with " + std::to_string(loads->n_right_hand_sides()) +
                                        " right-hand sides"
                                  : ""));
+  out << static_nodes_text(scene, problem);
   out << row("design", components_text(d) + "; " + goal_text(d.goal));
   out << row("", thickness_text(d));
   out << symmetry_row(problem.design);
@@ -332,6 +340,7 @@ std::string check_case(const std::string& name, std::span<const std::string> ove
   const Mechanism& mechanism = prepared.mechanism();
   describe_course(scene, out);
   if (!mechanism.start_text.empty()) out << row("start", mechanism.start_text);
+  if (!mechanism.assembly_text.empty()) out << row("positions", mechanism.assembly_text);
   for (const Drive& drive : scene.drives) {
     const std::array<double, 2> range = range_of(drive.motion, scene.time.end);
     out << row("drive " + drive.name, drive.words + ", from " + io::to_text(range[0], 6) + " to " +
@@ -369,6 +378,7 @@ std::string check_case(const std::string& name, std::span<const std::string> ove
                         ? ", adaptive steps"
                         : ", step " + io::to_text(scene.verify->step) + " s"));
   describe_operations(scene, mechanism, out);
+  out << natural_frequencies_text(prepared);
   out << numbers_text(scene, &mechanism, machine);
   out << "\nabsent (not built, no cost)\n";
   describe_absent(scene, out);

@@ -9,6 +9,7 @@
 #include "cases/check/check_cost.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
+#include "cases/scene/materials/material.h"
 #include "cases/scene/read.h"
 #include "io/files.h"
 
@@ -165,11 +166,30 @@ struct Remarks {
   }
 };
 
+/// Returns true if a modulus would be that of a known material if it were in MPa.
+/// @param density  density [kg/m^3]; 0: unknown
+bool looks_like_mpa(double modulus, double density) {
+  constexpr double kNear = 0.05;
+  const auto near = [](double a, double b) { return std::abs(a - b) <= kNear * b; };
+  return std::ranges::any_of(materials(), [&](const Material& m) {
+    return near(1e6 * modulus, m.youngs_modulus) && (density == 0 || near(density, m.density));
+  });
+}
+
+void remark_modulus(const std::string& key, double modulus, double density, Remarks& out) {
+  if (looks_like_mpa(modulus, density))
+    out.add(key, "Young's modulus is " + to_text(modulus, 3) +
+                     " Pa, which looks like a number in "
+                     "MPa; write \"" +
+                     to_text(modulus, 6) + " MPa\"");
+  else if (!out.scene.domain)  // the modulus of a static plate may be 1
+    out.check(key, modulus, kModulus, "Young's modulus is " + to_text(modulus, 3) + " Pa");
+}
+
 void remark_body(const Body& body, const BendingFigures& f, Remarks& out) {
   const Scene& scene = out.scene;
   const std::string path = "body." + body.name + ".", modulus = path + "youngs_modulus";
-  out.check(modulus, body.youngs_modulus, kModulus,
-            "Young's modulus is " + to_text(body.youngs_modulus, 3) + " Pa");
+  remark_modulus(modulus, body.youngs_modulus, body.density, out);
   if (has_density(scene))
     out.check(path + "density", body.density, kDensity,
               "the density is " + to_text(body.density, 3) + " kg/m^3");
@@ -219,16 +239,11 @@ void remark_turns(Remarks& out) {
 std::string bending_text(const BendingFigures& f) {
   std::string out;
   const std::string what = "bending of " + f.body;
-  std::string words = "slender strip with length / depth = " + to_text(f.slenderness(), 3);
-  if (f.frequencies[0] > 0)
-    words = "lowest natural frequencies " + to_text(f.frequencies[0], 3) + " and " +
-            to_text(f.frequencies[1], 3) + " Hz, " + to_string(f.support) + ", " + words;
-  else
-    words += ", " + to_string(f.support);
+  std::string words = to_string(f.support) +
+                      ", as a slender strip with length / depth = " + to_text(f.slenderness(), 3);
   out = summary_row(what, words);
   words.clear();
   const auto add = [&](const std::string& more) { words += (words.empty() ? "" : "; ") + more; };
-  if (f.step_frequency > 0) add("time step * lowest frequency = " + to_text(f.step_frequency, 2));
   if (f.sag) add("deflection under gravity " + to_text(*f.sag, 2) + " times the length");
   if (f.bend) add("deflection under loads " + to_text(*f.bend, 2) + " times the length (linear)");
   return words.empty() ? out : out + summary_row("", words);
@@ -305,6 +320,9 @@ std::vector<TurnFigures> turn_figures(const Scene& scene) {
 
 std::vector<std::string> plausibility_remarks(const Scene& scene) {
   Remarks out{scene};
+  if (scene.domain)
+    remark_modulus("domain.youngs_modulus", scene.domain->youngs_modulus, scene.domain->density,
+                   out);
   for (const Body& body : scene.bodies) remark_body(body, figures_of(scene, body), out);
   if (scene.gravity && scene.gravity->norm() > 0)
     out.check("gravity", scene.gravity->norm(), kGravity,
@@ -315,6 +333,9 @@ std::vector<std::string> plausibility_remarks(const Scene& scene) {
     remark_start("rigid_body." + body.name + ".angle", body.angle, out);
   for (const Body& body : scene.bodies)
     remark_start("body." + body.name + ".angle", body.angle, out);
+  for (size_t i = 0; i < scene.springs.size(); ++i)
+    if (scene.springs[i].row->name == std::string("torsion"))
+      remark_start("spring." + std::to_string(i) + ".rest_angle", scene.springs[i].rest, out);
   remark_turns(out);
   return out.out;
 }
@@ -334,6 +355,8 @@ std::string numbers_text(const Scene& scene, const Mechanism* mechanism, const M
                            to_text(turn.angle * 180 / std::numbers::pi, 4) + " degrees, " +
                            to_text(turn.angle / (2 * std::numbers::pi), 3) + " revolutions");
   out += disk_text(scene, mechanism, machine);
+  if (!scene.notes.empty()) out += "\nnotes\n";
+  for (const std::string& note : scene.notes) out += "  " + note + "\n";
   const std::vector<std::string> odd = plausibility_remarks(scene);
   if (!odd.empty()) out += "\nimplausible\n";
   for (const std::string& each : odd) out += "  " + each + "\n";

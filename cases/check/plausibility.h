@@ -30,7 +30,7 @@ struct BendingFigures {
   double length = 0;                ///< Length L; of the longer arm if it is held in between [m].
   double depth = 0;                 ///< Depth d in the direction of bending [m].
 
-  /// Two lowest natural frequencies [Hz]; 0 in a static analysis without gravity.
+  /// Two lowest natural frequencies of the strip [Hz]; 0 in a static analysis without gravity.
   std::array<double, 2> frequencies{};
 
   double step_frequency = 0;  ///< Time step times lowest frequency [-]; 0: no motion.
@@ -59,8 +59,8 @@ std::vector<std::string> plausibility_remarks(const Scene& scene);
 /// Returns one line of a summary: a name, and the text about it in the second column.
 std::string summary_row(const std::string& what, const std::string& words);
 
-/// Returns the section of a summary that makes mistakes visible: lowest natural frequencies,
-/// deflections, rotations, the resource estimate, and implausible numbers.
+/// Returns the section of a summary that makes mistakes visible: slenderness, deflections,
+/// rotations, the resource estimate, and implausible numbers.
 /// @param mechanism  mechanism of a scene that moves, else null
 std::string numbers_text(const Scene& scene, const Mechanism* mechanism, const Machine& machine);
 

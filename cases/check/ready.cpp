@@ -9,10 +9,11 @@
 #include "cases/results/expectations.h"
 #include "cases/scene/version.h"
 #include "fem/dynamics/starts/rigid_motion.h"
-#include "fem/solve/scaled_constraints.h"
+#include "fem/solve/redundancy.h"
 #include "geometry/text.h"
 #include "io/case_files/case_document.h"
 #include "io/files.h"
+#include "io/tables.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -44,14 +45,14 @@ fs::path cases_folder() {
   return kCasesFolder;
 }
 
-/// Throws for joints that depend on each other, and for bodies that do not reach their joints.
+/// Throws for joints that contradict each other, and for bodies that do not reach their joints.
 void require_start(Mechanism& mechanism) {
   constexpr double kPositionTolerance =
       1e-6;  // relative to the size of the model: coordinates in cases are rounded
   fem::Workspace& model = mechanism.model;
   const fem::State x = fem::start_state(model, mechanism.moving_roots, 0, fem::Start::rigid,
                                         mechanism.motion.body_poses);
-  fem::require_independent(fem::diagnose(model, x));
+  fem::leave_out_redundant(model, x);
   fem::ScaledConstraints rows;
   rows.evaluate(model, x);
   const VectorXd misses = rows.misses();
@@ -158,6 +159,18 @@ ReadyCase ready_case(const std::string& name, std::span<const std::string> overr
   PreparedCase prepared(read_scene(file));
   require_buildable(prepared, directory);
   return {std::move(file), std::move(prepared)};
+}
+
+std::string title_of_case(const std::string& name) {
+  const io::CaseDocument document(find_case(name));
+  const io::CaseNode* title = document.root.find("title");
+  return title && title->kind == io::CaseNode::Kind::text ? title->text : name;
+}
+
+std::string list_of_cases() {
+  std::vector<std::vector<std::string>> rows;
+  for (const std::string& name : shipped_cases()) rows.push_back({name, title_of_case(name)});
+  return io::aligned_table(rows);
 }
 
 std::vector<std::string> shipped_cases() {

@@ -29,6 +29,11 @@ ReadyCase ready_case(const std::string& name, std::span<const std::string> overr
 /// Returns the path of a case file: the path itself, or the path of the shipped case of this name.
 /// @throws Error (input) naming the shipped cases.
 std::string find_case(const std::string& name);
+/// Returns the title of a case, without reading more of it; its name if it has no title.
+/// @param name  path, or name of a shipped case
+std::string title_of_case(const std::string& name);
+/// Returns a line with name and title for each shipped case.
+std::string list_of_cases();
 /// Returns the names of the shipped cases.
 std::vector<std::string> shipped_cases();
 

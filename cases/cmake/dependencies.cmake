@@ -34,6 +34,7 @@ flexmorph_find(VTK 9.1 COMPONENTS CommonCore CommonDataModel IOCore IOXML IOImag
 flexmorph_find(tomlplusplus 3.3)
 flexmorph_find(CLI11 2.1)
 flexmorph_find(nlohmann_json 3.11)
+flexmorph_find(Spectra 1.0)
 
 # The C++ header is in a separate package.
 find_package(NLopt 2.7 QUIET CONFIG)

@@ -42,9 +42,18 @@ std::vector<std::array<std::string, 3>> meanings_of(const KeyTable& table);
 /// Returns the name of a key as it is shown: NAME if the user chooses the name.
 std::string shown_name(const io::Key& key);
 
-/// Returns the reference of one table, or of all tables if `table` is empty, in columns.
+/// Explains what is accepted as a number.
+inline constexpr const char* kNumbersSentence =
+    "Numbers are in the unit in brackets. In quotes, a number may be a formula of [constants], "
+    "such "
+    "as \"2*h\", or have another unit, such as \"12 mm\", \"30 deg\" or \"7.85 g/cm^3\".";
+
+/// Returns the reference of one table, of all tables if `word` is empty, or of all keys with the
+/// word in their name or sentence if no table has this name, in columns.
+/// @param word   path of a table, or part of a name or of a sentence
 /// @param width  width of the screen [characters]
-std::string keys_for_terminal(const std::string& table, size_t width);
+/// @throws Error (input) with the most similar table if nothing is found.
+std::string keys_for_terminal(const std::string& word, size_t width);
 /// Returns the reference of all tables as Markdown, for cases/README.md.
 std::string keys_as_markdown();
 /// Replaces a generated section of a Markdown file between the two lines that mark it.

@@ -104,15 +104,15 @@ constexpr const char* kBash = R"sh(_flexmorph() {
   else
     case "$(_flexmorph_follows "${words[1]}")" in
       case)
-        found="$("${words[0]}" cases 2> /dev/null)"
+        found="$("${words[0]}" cases 2> /dev/null | cut -d ' ' -f 1)"
         COMPREPLY=($(compgen -f -X '!*.toml' -- "$cur"))
         ;;
       run) COMPREPLY=($(compgen -d -- "$cur")) ;;
       run_or_case)
-        found="$("${words[0]}" cases 2> /dev/null)"
+        found="$("${words[0]}" cases 2> /dev/null | cut -d ' ' -f 1)"
         COMPREPLY=($(compgen -f -X '!*.toml' -- "$cur") $(compgen -d -- "$cur"))
         ;;
-      table) found="$(_flexmorph_tables)" ;;
+      word) found="$(_flexmorph_tables)" ;;
       shell) found="bash zsh" ;;
     esac
   fi
@@ -147,16 +147,16 @@ constexpr const char* kZsh = R"sh(_flexmorph() {
   else
     case "$(_flexmorph_follows "${words[2]}")" in
       case)
-        compadd -- $("${words[1]}" cases 2> /dev/null)
+        compadd -- $("${words[1]}" cases 2> /dev/null | cut -d ' ' -f 1)
         _files -g '*.toml'
         ;;
       run) _files -/ ;;
       run_or_case)
-        compadd -- $("${words[1]}" cases 2> /dev/null)
+        compadd -- $("${words[1]}" cases 2> /dev/null | cut -d ' ' -f 1)
         _files -/
         _files -g '*.toml'
         ;;
-      table) compadd -- $(_flexmorph_tables) ;;
+      word) compadd -- $(_flexmorph_tables) ;;
       shell) compadd -- bash zsh ;;
     esac
   fi

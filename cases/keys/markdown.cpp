@@ -15,9 +15,9 @@ std::string cell(const std::string& text) {
 }  // namespace
 
 std::string keys_as_markdown() {
-  std::string out;
+  std::string out = std::string(kNumbersSentence) + "\n";
   for (const KeyTable& table : key_book()) {
-    out += (out.empty() ? "#### " : "\n#### ") + table.title() + "\n\n";
+    out += "\n#### " + table.title() + "\n\n";
     if (table.own) out += table.own->sentence + "\n\n";
     out += "| key | value | default | description |\n| --- | --- | --- | --- |\n";
     for (const io::Key* key : table.keys)

@@ -21,7 +21,7 @@ std::string below(const std::string& path, const io::Key& key) {
 
 Json number_schema(const io::Quantity& q) {
   constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-  Json out{{"type", "number"}};
+  Json out{{"type", {"number", "string"}}};  // limits of numbers do not apply to texts
   if (q.lower > -kUnlimited) out[q.lower_open ? "exclusiveMinimum" : "minimum"] = q.lower;
   if (q.upper < kUnlimited) out[q.upper_open ? "exclusiveMaximum" : "maximum"] = q.upper;
   return out;
@@ -32,7 +32,7 @@ Json value_schema(const io::Form& form, const std::string& path) {
     case Kind::number:
       return number_schema(form.quantity);
     case Kind::integer:
-      return {{"type", "integer"}, {"minimum", form.lower}, {"maximum", form.upper}};
+      return {{"type", {"integer", "string"}}, {"minimum", form.lower}, {"maximum", form.upper}};
     case Kind::boolean:
       return {{"type", "boolean"}};
     case Kind::text:

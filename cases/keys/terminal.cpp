@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <sstream>
 
 #include "cases/keys/book.h"
@@ -47,7 +48,10 @@ void write_row(const Cells& cells, const ColumnWidths& widths, std::string& out)
   }
 }
 
-void write_table(const KeyTable& table, size_t width, std::string& out) {
+/// Writes a table and the explanations of the words that its keys allow.
+/// @param explained  name of the only key whose words are explained; empty: all keys
+void write_table(const KeyTable& table, size_t width, std::string& out,
+                 const std::string& explained = "") {
   out += (out.empty() ? "" : "\n") + table.title();
   if (table.own) out += ": " + table.own->sentence;
   out += "\n";
@@ -59,12 +63,13 @@ void write_table(const KeyTable& table, size_t width, std::string& out) {
   }
   // The width that remains beside the names is divided between type, default and sentence.
   const size_t taken = 2 + widths[0] + 2 * (kColumns - 1);
-  const size_t rest = std::max<size_t>(60, width > taken ? width - taken : 0);
+  const size_t rest = std::max<size_t>(45, width > taken ? width - taken : 0);
   widths[1] = 3 * rest / 10;
   widths[2] = 2 * rest / 10;
   widths[3] = rest - widths[1] - widths[2];
   for (const Cells& cells : rows) write_row(cells, widths, out);
   for (const auto& [key, word, sentence] : meanings_of(table)) {
+    if (!explained.empty() && key != explained) continue;
     std::string indent = "  ";
     for (const std::string& line :
          wrapped(key + " = \"" + word + "\": " + sentence, taken + rest - 4)) {
@@ -74,14 +79,40 @@ void write_table(const KeyTable& table, size_t width, std::string& out) {
   }
 }
 
+std::string in_small_letters(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Writes all keys that have a word in their name or sentence.
+void write_found(const std::string& word, size_t width, std::string& out) {
+  const std::string wanted = in_small_letters(word);
+  const auto has_word = [&](const std::string& text) {
+    return in_small_letters(text).find(wanted) != std::string::npos;
+  };
+  for (const KeyTable& each : key_book()) {
+    KeyTable found = each;
+    std::erase_if(found.keys, [&](const io::Key* key) {
+      return !has_word(key->name) && !has_word(sentence_of(*key));
+    });
+    if (!found.keys.empty()) write_table(found, width, out, word);
+  }
+}
+
 }  // namespace
 
-std::string keys_for_terminal(const std::string& table, size_t width) {
+std::string keys_for_terminal(const std::string& word, size_t width) {
   std::string out;
-  if (!table.empty())
-    write_table(table_of_keys(table), width, out);
-  else
+  const std::vector<std::string> tables = key_table_names();
+  if (word.empty()) {
+    for (const std::string& line : wrapped(kNumbersSentence, width)) out += line + "\n";
     for (const KeyTable& each : key_book()) write_table(each, width, out);
+  } else if (std::find(tables.begin(), tables.end(), word) != tables.end()) {
+    write_table(table_of_keys(word), width, out);
+  } else {
+    write_found(word, width, out);
+    if (out.empty()) table_of_keys(word);  // names the most similar table
+  }
   return out;
 }
 

@@ -59,6 +59,7 @@ struct PathRecord {
   Series table;              ///< Table with the columns of path_columns().
   std::vector<double> arc;   ///< Arc length of the path in scaled displacements (n_rows) [-].
   fem::StaticResult result;  ///< Counts of the solver and last load factor.
+  std::vector<std::string> redundant_joints;  ///< Joints whose forces are not unique.
 };
 
 /// The largest size of a column and the time at which it is reached [s].

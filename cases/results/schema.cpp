@@ -4,9 +4,23 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/keys/book.h"
+#include "geometry/text.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
+namespace {
+
+constexpr const char* kNotUnique =
+    "redundant joints, whose forces are not unique; the forces with the least sum of squares are "
+    "given";
+
+/// Returns names as a list, or std::monostate if there are none.
+Value optional_list(const std::vector<std::string>& names) {
+  return names.empty() ? Value() : Value(joined(names));
+}
+
+}  // namespace
+
 Value optional_number(const std::optional<double>& number) {
   if (number && std::isfinite(*number)) return *number;
   return {};
@@ -62,6 +76,8 @@ std::span<const ResultQuantity<fem::MotionResult>> motion_quantities() {
        [](const R& r) -> Value { return r.velocity_drift; }},
       {"smallest_area_ratio", "-", "smallest ratio of deformed to undeformed area",
        [](const R& r) -> Value { return r.smallest_area_ratio; }},
+      {"not_unique_forces", "", kNotUnique,
+       [](const R& r) { return optional_list(r.redundant_joints); }},
       {"condition", "-", "estimated condition number of the last matrix (--condition)",
        [](const R& r) { return optional_number(r.condition); }}};
   return kTable;
@@ -82,6 +98,8 @@ std::span<const ResultQuantity<PathRecord>> path_quantities() {
        [](const P& p) -> Value { return p.result.rejected; }},
       {"newton_iterations", "-", "number of iterations of Newton's method",
        [](const P& p) -> Value { return p.result.iterations; }},
+      {"not_unique_forces", "", kNotUnique,
+       [](const P& p) { return optional_list(p.redundant_joints); }},
       {"condition", "-", "estimated condition number of the last matrix (--condition)",
        [](const P& p) { return optional_number(p.result.condition); }}};
   return kTable;

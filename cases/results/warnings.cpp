@@ -298,11 +298,12 @@ void add_motion(const Scene& scene, const MotionRecord& motion, Warnings& out) {
   // The explicit integrator shortens steps to satisfy its tolerance, which needs no warning.
   if (const fem::CutSteps& cut = motion.result.cut;
       cut.number > 0 && scene.time.integrator != "minimal_coordinates")
-    out.push_back({"Newton's method did not converge in all time steps of " +
-                   io::to_text(scene.time.step, 3) + " s. From t = " + io::to_text(cut.since, 4) +
-                   " s on, " + std::to_string(cut.number) +
-                   " steps were shortened; the shortest step is " + io::to_text(cut.shortest, 2) +
-                   " s."});
+    out.push_back(
+        {"Some time steps of " + io::to_text(scene.time.step, 3) +
+         " s were too long for Newton's method or for closed loops of rigid bodies, which "
+         "must stay on their branch. From t = " +
+         io::to_text(cut.since, 4) + " s on, " + std::to_string(cut.number) +
+         " steps were shortened; the shortest step is " + io::to_text(cut.shortest, 2) + " s."});
   if (const fem::EnergyGain& gain = motion.result.energy_gain; gain.time > 0)
     out.push_back({"No drive supplies energy, but the energy of the motion has grown by " +
                        io::to_text(100 * gain.part, 3) +
@@ -348,6 +349,7 @@ Warnings warnings_of(const Scene& scene, const RunResult& result) {
     add_mesh_changes(*result.motions.verified, "the motion on the design mesh", out);
   if (scene.file)
     for (const std::string& former : scene.file->former_names()) out.push_back({former});
+  for (const std::string& note : scene.notes) out.push_back({note});
   if (!result.info.lost_frames.empty()) out.push_back({result.info.lost_frames});
   if (!result.info.missing_exports.empty()) out.push_back({result.info.missing_exports});
   return out;

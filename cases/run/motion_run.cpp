@@ -18,9 +18,9 @@ namespace {
 /// steps that were shortened.
 class MotionMessages {
  public:
-  MotionMessages(const Scene& scene, const MotionRequest& request, const std::string& start_text,
+  MotionMessages(const Scene& scene, const MotionRequest& request, const Mechanism& mechanism,
                  MotionRecord& record)
-      : scene_(scene), request_(request), start_text_(start_text), record_(record) {}
+      : scene_(scene), request_(request), mechanism_(mechanism), record_(record) {}
 
   void add(const fem::MotionStep& step) {
     if (record_.table.n_rows() == 0) start(step);
@@ -39,24 +39,29 @@ class MotionMessages {
     const std::string length = io::to_text(scene_.time.step, 3) + " s";
     if (scene_.time.integrator == "minimal_coordinates")
       return "The error tolerance requires time steps shorter than " + length + ".";
-    return "Newton's method did not converge in a time step of " + length +
-           ". Shorter time steps are used.";
+    return "A time step of " + length +
+           " was too long for Newton's method or for a closed loop of rigid bodies, which must "
+           "stay "
+           "on its branch. Shorter time steps are used.";
   }
   void say(const std::string& words) const {
     if (request_.say) request_.say(words);
   }
   void start(const fem::MotionStep& step) {
     record_.remarks = start_remarks(scene_, step.model, step.x, step.so_far.start_change);
-    if (!start_text_.empty())
+    const std::string& start = mechanism_.start_text;
+    if (!start.empty())
       record_.remarks.insert(record_.remarks.begin(),
-                             "The start of the motion was chosen automatically: " + start_text_);
+                             "The start of the motion was chosen automatically: " + start);
+    if (!mechanism_.assembly_text.empty())
+      record_.remarks.insert(record_.remarks.begin(), mechanism_.assembly_text);
     for (const std::string& each : record_.remarks) say(each);
     if (damps_no_multipliers(scene_)) say(undamped_text(scene_));
   }
 
   const Scene& scene_;
   const MotionRequest& request_;
-  const std::string& start_text_;
+  const Mechanism& mechanism_;
   MotionRecord& record_;
   bool said_alternation_ = false, said_cut_ = false;
 };
@@ -75,7 +80,7 @@ class StepSequence {
       : request_(request),
         model_(mechanism.model),
         columns_(scene, mechanism.moving_roots, request.balance),
-        messages_(scene, request, mechanism.start_text, out.record),
+        messages_(scene, request, mechanism, out.record),
         shapes_(scene, densities_of(request)) {
     if (!scene.measures.empty())
       columns_.set_undeformed(fem::start_state(mechanism.model, mechanism.moving_roots, 0,

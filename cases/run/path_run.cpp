@@ -1,39 +1,15 @@
 #include "cases/run/path_run.h"
 
+#include "cases/assembly/static_path.h"
 #include "cases/output/motion_frames.h"
 #include "cases/results/failure.h"
 #include "cases/results/motion_columns.h"
 #include "cases/scene/elements/row.h"
+#include "fem/solve/redundancy.h"
+#include "io/files.h"
 
 namespace flexmorph::cases {
 namespace {
-
-fem::StaticSettings settings_of(const StaticAnalysis& analysis) {
-  fem::StaticSettings out;
-  out.path = analysis.path;
-  out.to = analysis.to;
-  out.first_step = 1.0 / analysis.steps;
-  out.largest_step = out.first_step;
-  out.max_steps = analysis.max_steps;
-  out.max_iterations = analysis.max_iterations;
-  return out;
-}
-
-/// Applies in steps the loads and temperatures that are constant along the path.
-void put_on(const Scene& scene, fem::Workspace& model, fem::State& x) {
-  const StaticAnalysis& analysis = *scene.statics;
-  model.scale_loads(0);
-  const bool loads = !analysis.loads_grow && (!scene.loads.empty() || scene.gravity),
-             temperatures = !analysis.temperatures_grow;
-  if (loads || temperatures) {
-    model.choose_scaled(loads, temperatures);
-    fem::StaticSettings settings = settings_of(analysis);
-    settings.path = fem::StaticSettings::Path::load;
-    settings.to = 1;
-    fem::solve_static(model, x, settings, {});
-  }
-  model.choose_scaled(analysis.loads_grow, analysis.temperatures_grow);
-}
 
 /// Computes the rows of a path and passes its equilibria to the writers.
 class PathSteps {
@@ -64,6 +40,9 @@ class PathSteps {
   }
 
   void add(const fem::StaticStep& step) {
+    if (const fem::LeftOutMiss miss = fem::left_out_miss(model_, step.x.q, step.x.t); miss.is_large)
+      throw Error::numerical("redundant joints do not agree with the others: the error of joint '" +
+                             miss.joint + "' is " + io::to_text(miss.miss, 3) + " m");
     const double way = (step.x.q - before_).cwiseProduct(scales_).norm();
     out_.arc.push_back(out_.arc.empty() ? 0 : out_.arc.back() + way);
     before_ = step.x.q;
@@ -77,7 +56,9 @@ class PathSteps {
     }
     const double strain = model_.energies(step.x).strain;
     measures_.append(model_, step.x, heating, row_);
-    mechanism_.append(model_, step.x, row_);
+    fem::State shown = step.x;
+    shown.lambda = fem::least_multipliers(model_, step.x);
+    mechanism_.append(model_, shown, row_);
     row_.insert(row_.end(), {strain, static_cast<double>(step.iterations)});
     const StepRecord record{model_, step.x, row_, static_cast<double>(step.number), heating};
     for (const auto& writer : writers_) writer->add(record);
@@ -104,7 +85,9 @@ PathRecord run_path(const PreparedCase& prepared, const PathRequest& request, Ru
   fem::Workspace& model = mechanism.model;
   fem::State x = fem::start_state(model, mechanism.moving_roots, 0, fem::Start::rigid,
                                   mechanism.motion.body_poses);
+  fem::leave_out_redundant(model, x);
   PathRecord out;
+  out.redundant_joints = fem::redundant_joints(model);
   PathSteps steps(scene, mechanism, x, folder, out);
   const auto observe = [&](const fem::StaticStep& step) {
     steps.add(step);
@@ -113,8 +96,8 @@ PathRecord run_path(const PreparedCase& prepared, const PathRequest& request, Ru
     return true;
   };
   try {
-    if (scene.has_heat()) put_on(scene, model, x);
-    fem::StaticSettings settings = settings_of(*scene.statics);
+    begin_static_path(scene, model, x);
+    fem::StaticSettings settings = static_settings(*scene.statics);
     settings.condition = request.condition;
     out.result = fem::solve_static(model, x, settings, observe);
   } catch (const Error& error) {

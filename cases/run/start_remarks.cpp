@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fem/dynamics/starts/driven_frame.h"
+#include "fem/solve/redundancy.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -77,6 +78,11 @@ std::vector<std::string> start_remarks(const Scene& scene, const fem::Model& mod
     out.push_back("The velocities at the start were changed by up to " +
                   io::to_text(std::max(change, largest), 3) +
                   " m/s, because the joints do not allow the original velocities");
+  if (const std::vector<std::string> joints = fem::redundant_joints(model); !joints.empty())
+    out.push_back(
+        "The forces of these joints are not unique, because one or more of the joints are "
+        "redundant: " +
+        list_of(joints) + ". The forces with the least sum of squares are given");
   return out;
 }
 

@@ -108,7 +108,9 @@ Scene with_parts(const GivenCase& given, const std::vector<GivenPart>& parts) {
                          (out.designs.empty()
                               ? std::string()
                               : "; the designed bodies are " + joined(bodies_of(out))));
-    design->part = read_part(part.path, given.scene, *design);
+    DrawnPart drawn = read_part(part.path, given.scene, *design);
+    design->part = std::move(drawn.regions);
+    out.notes.insert(out.notes.end(), drawn.notes.begin(), drawn.notes.end());
   }
   for (const BodyDesign& design : out.designs)
     if (!design.part && design.start.empty())

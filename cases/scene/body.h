@@ -79,6 +79,7 @@ struct BodyHeat {
 };
 
 struct ElementRow;  // elements/row.h
+struct Material;    // materials/material.h
 
 /// A plate or a beam. Material coordinates: X from the root to the free end; Y across,
 /// -width/2..width/2 in the plane and 0..width in space.
@@ -94,6 +95,8 @@ struct Body {
   /// plane of the motion and width across it (`height` and `width` in the case).
   double width = 0, thickness = 0;
 
+  /// Material from which numbers were taken; null if all of them are given.
+  const Material* material = nullptr;
   double density = 0;                     ///< Density [kg/m^3].
   double youngs_modulus = 0;              ///< Young's modulus [Pa].
   double poisson_ratio = 0;               ///< Poisson's ratio [-].

@@ -1,22 +1,31 @@
 #include "cases/scene/body_keys.h"
 
 #include "cases/scene/elements/row.h"
+#include "cases/scene/materials/material.h"
 
 namespace flexmorph::cases {
 namespace {
 
 using io::positive;
 
+constexpr const char* kOfMaterial = "that of `material`; required without it";
+
+const io::Key& kMaterial = material_key("body");
+
 const io::Key& kDensity =
     io::key("body", "density")
         .number(positive("a density", "kg/m^3"))
-        .otherwise_as("required, except in a [static] analysis without gravity")
+        .otherwise_as(
+            "that of `material`; required without it, except in a [static] analysis without "
+            "gravity")
         .description("Density of the material.");
 const io::Key& kYoungsModulus = io::key("body", "youngs_modulus")
                                     .number(positive("Young's modulus", "Pa"))
+                                    .otherwise_as(kOfMaterial)
                                     .description("Young's modulus of the material.");
 const io::Key& kPoissonRatio = io::key("body", "poisson_ratio")
                                    .number(io::between("Poisson's ratio", "", 0, 0.5))
+                                   .otherwise_as(kOfMaterial)
                                    .description("Poisson's ratio of the material.");
 
 }  // namespace
@@ -132,9 +141,17 @@ void refuse_flow(const io::Table& t) {
 }
 
 void read_material(const io::Table& t, bool has_density, Body& body) {
-  body.density = t.number(kDensity, has_density ? std::nullopt : std::optional<double>(1));
-  body.youngs_modulus = t.number(kYoungsModulus);
-  body.poisson_ratio = t.number(kPoissonRatio);
+  std::optional<double> density, youngs_modulus, poisson_ratio;
+  if (!has_density) density = 1;
+  if (t.has(kMaterial)) {
+    body.material = find_material(t.choice(kMaterial));
+    density = body.material->density;
+    youngs_modulus = body.material->youngs_modulus;
+    poisson_ratio = body.material->poisson_ratio;
+  }
+  body.density = t.number(kDensity, density);
+  body.youngs_modulus = t.number(kYoungsModulus, youngs_modulus);
+  body.poisson_ratio = t.number(kPoissonRatio, poisson_ratio);
 }
 
 }  // namespace flexmorph::cases

@@ -49,6 +49,7 @@ struct Domain {
   std::string name;                    ///< Name of the plate in file names.
   Box bounds;                          ///< Bounding box, which the design mesh covers [m].
   Region shape;                        ///< Shape of the plate [m]; no outer ring: all of `bounds`.
+  bool is_drawn = false;               ///< True if the shape was read from a drawing.
   double thickness = 1;                ///< Thickness of the plate [m].
   double youngs_modulus = 1;           ///< Young's modulus [Pa].
   double poisson_ratio = 0.3;          ///< Poisson's ratio [-].

@@ -8,6 +8,7 @@
 #include "io/case_files/formula.h"
 #include "io/files.h"
 #include "io/smooth_table.h"
+#include "io/table_noise.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -23,7 +24,9 @@ using Constants = std::map<std::string, double>;
 
 const Key& kConstant = io::key("constants", "*")
                            .number(any_number("a constant"))
-                           .description("Constant NAME, which formulas of drives can use.");
+                           .description(
+                               "Constant NAME for formulas of drives and numbers; a number with a "
+                               "unit is converted to SI units.");
 const Key& kName =
     io::key("drive", "name")
         .text("the name of a drive")
@@ -33,8 +36,8 @@ const Key& kFormula = io::key("drive", "formula")
                           .text("a formula of the time t")
                           .otherwise_as("required unless `table`, `csv` or `from` is given")
                           .description(
-                              "Formula of the time `t`: + - * / ^, pi, sin ... sqrt, abs, min, "
-                              "max, step, smoothstep, piecewise.");
+                              "Formula of `t` and other drives: + - * / ^ pi sin ... sqrt abs "
+                              "min max step smoothstep piecewise.");
 const Key& kTable =
     io::key("drive", "table")
         .rows(any_number("a time or a value"), 2)
@@ -68,18 +71,6 @@ const Key& kFrom = io::key("drive", "from")
                            "The drive is computed from the [trajectory] by inverse kinematics of "
                            "the rigid mechanism.");
 
-Constants read_constants(const Table& root) {
-  Constants out;
-  if (!root.has(tables::kConstants)) return out;
-  const Table t = root.table(tables::kConstants);
-  for (const std::string& key : t.keys()) {
-    const std::string why = io::Formula::refusal_of_name(key);
-    if (!why.empty()) t.fail(kConstant.named(key), why);
-    out[key] = t.number(kConstant.named(key));
-  }
-  return out;
-}
-
 /// Returns a function that is defined in [0, end] and is continued outside by the parabola of
 /// value, rate and acceleration at the nearer end.
 template <class Function>
@@ -103,10 +94,17 @@ std::function<fem::Motion(double)> over_run(Function function, double end) {
   t.fail(key, words);
 }
 
-void read_formula(const Table& t, const Constants& constants, double end, Drive& drive) {
+/// Constants and other drives, which formulas can name.
+struct Names {
+  Constants constants;
+  /// Drives by the end of their parameter; without one they are functions of time.
+  std::map<std::optional<double>, io::NamedFunctions> drives;
+};
+
+void read_formula(const Table& t, const Names& names, double end, Drive& drive) {
   drive.words = t.string(kFormula);
   try {
-    io::Formula formula(drive.words, constants);
+    io::Formula formula(drive.words, names.constants, names.drives.at(drive.until));
     formula.check(end);
     drive.discontinuities = formula.discontinuities(end);
     if (const auto jump = formula.first_jump(end))
@@ -117,11 +115,27 @@ void read_formula(const Table& t, const Constants& constants, double end, Drive&
   } catch (const Error& error) {
     pass_on(t, kFormula, error, drive.words);
   }
+  if (drive.until) drive.discontinuities.clear();
+}
+
+/// Appends a note if the errors of a table would dominate the acceleration of the drive.
+void note_noise(const Table& t, const Key& key, const std::vector<double>& times,
+                const std::vector<double>& values, std::vector<std::string>& notes) {
+  const auto noise = io::noise_of(times, values);
+  if (!noise) return;
+  notes.push_back(t.subject_of(key) +
+                  ": the table contains noise: " + to_text(100 * noise->sign_changes, 2) +
+                  " % of its neighbouring second differences have opposite signs, and the "
+                  "acceleration over one interval is " +
+                  to_text(noise->ratio, 2) +
+                  " times the acceleration over four intervals. The drive follows every point; "
+                  "smooth the table before the run");
 }
 
 std::function<fem::Motion(double)> tabulated(const Table& t, const Key& key,
                                              const std::vector<double>& times,
-                                             const std::vector<double>& values, double end) {
+                                             const std::vector<double>& values, double end,
+                                             std::vector<std::string>& notes) {
   const auto make = [&] {
     try {
       return io::SmoothTable(times, values);
@@ -130,6 +144,7 @@ std::function<fem::Motion(double)> tabulated(const Table& t, const Key& key,
     }
   };
   io::SmoothTable table = make();
+  note_noise(t, key, times, values, notes);
   if ((table.first() > 0 || table.last() < end) && t.has(kUntil))
     t.fail(key, "the table of a curve must cover the parameter from 0 to until = " + to_text(end) +
                     "; this table extends from " + to_text(table.first()) + " to " +
@@ -141,26 +156,31 @@ std::function<fem::Motion(double)> tabulated(const Table& t, const Key& key,
   return over_run(std::move(table), end);
 }
 
-std::function<fem::Motion(double)> read_table(const Table& t, double end, std::string& words) {
+std::function<fem::Motion(double)> read_table(const Table& t, double end, std::string& words,
+                                              std::vector<std::string>& notes) {
   std::vector<double> times, values;
   for (const std::vector<double>& row : t.rows(kTable)) {
     times.push_back(row[0]);
     values.push_back(row[1]);
   }
   words = "table of " + to_text(static_cast<int>(times.size())) + " points";
-  return tabulated(t, kTable, times, values, end);
+  return tabulated(t, kTable, times, values, end, notes);
 }
 
-std::function<fem::Motion(double)> read_csv_drive(const Table& t, double end, std::string& words) {
+std::function<fem::Motion(double)> read_csv_drive(const Table& t, double end, std::string& words,
+                                                  std::vector<std::string>& notes) {
   const std::string name = t.string(kCsv);
   const std::string time_column = t.string(kTimeColumn);
   const std::string column = t.string(kColumn);
   const auto numbers = [&](const io::CsvTable& csv, const Key& key, const std::string& wanted) {
-    try {
-      return csv.numbers(wanted);
-    } catch (const Error& error) {
+    const std::vector<std::string>& known = csv.columns;
+    if (std::find(known.begin(), known.end(), wanted) == known.end())
       t.fail(key, "'" + name + "' has no column '" + wanted + "'; its columns are " +
-                      joined(csv.columns, ", ", "'"));
+                      joined(known, ", ", "'"));
+    try {
+      return csv.all_numbers(wanted);
+    } catch (const Error& error) {
+      pass_on(t, kCsv, error);
     }
   };
   io::CsvTable csv;
@@ -174,11 +194,11 @@ std::function<fem::Motion(double)> read_csv_drive(const Table& t, double end, st
   const std::vector<double> values = numbers(csv, kColumn, column);
   words = "'" + name + "', column '" + column + "', " + to_text(static_cast<int>(times.size())) +
           " points";
-  return tabulated(t, kCsv, times, values, end);
+  return tabulated(t, kCsv, times, values, end, notes);
 }
 
-Drive read_drive(const Table& t, const Constants& constants, const Scene& scene,
-                 bool has_trajectory) {
+/// Reads a drive as far as possible without the other drives, which its formula may name.
+Drive read_drive(const Table& t, Scene& scene, bool has_trajectory) {
   Drive drive;
   drive.name = read_word(t, kName);
   for (const Drive& other : scene.drives)
@@ -194,13 +214,30 @@ Drive read_drive(const Table& t, const Constants& constants, const Scene& scene,
   }
   if (t.has(kUntil)) drive.until = t.number(kUntil);
   const double end = drive.until.value_or(scene.time.end);
-  if (t.has(kFormula))
-    read_formula(t, constants, end, drive);
-  else
-    drive.motion =
-        t.has(kTable) ? read_table(t, end, drive.words) : read_csv_drive(t, end, drive.words);
-  if (drive.until) drive.discontinuities.clear();
+  if (t.has(kTable))
+    drive.motion = read_table(t, end, drive.words, scene.notes);
+  else if (t.has(kCsv))
+    drive.motion = read_csv_drive(t, end, drive.words, scene.notes);
   return drive;
+}
+
+/// Returns what the formulas of drives can name.
+Names names_for_formulas(const Table& root, const std::vector<Table>& tables, const Scene& scene) {
+  Names out;
+  out.constants = read_constants(root);
+  for (size_t i = 0; i < tables.size(); ++i) {
+    const Drive& drive = scene.drives[i];
+    io::NamedFunctions& group = out.drives[drive.until];
+    if (tables[i].has(kFormula))
+      group.formulas[drive.name] = tables[i].string(kFormula);
+    else if (drive.motion)
+      group.functions[drive.name] =
+          std::make_shared<const io::NamedFunctions::Function>([motion = drive.motion](double t) {
+            const fem::Motion x = motion(t);
+            return Jet{x.value, x.rate, x.acceleration};
+          });
+  }
+  return out;
 }
 
 void refuse_curve(const Table& t, const Key& key, const Scene& scene, const std::string& drive) {
@@ -221,6 +258,18 @@ double extreme(const std::function<fem::Motion(double)>& motion, double a, doubl
 }
 
 }  // namespace
+
+std::map<std::string, double> read_constants(const Table& root) {
+  std::map<std::string, double> out;
+  if (!root.has(tables::kConstants)) return out;
+  const Table t = root.table(tables::kConstants);
+  for (const std::string& key : t.keys()) {
+    const std::string why = io::Formula::refusal_of_name(key);
+    if (!why.empty()) t.fail(kConstant.named(key), why);
+    out[key] = t.number(kConstant.named(key));
+  }
+  return out;
+}
 
 std::vector<std::string> overrides_of_drive_files(const Table& root) {
   std::vector<std::string> out;
@@ -264,9 +313,15 @@ void refuse_jumps(const Table& t, const Key& key, const Scene& scene, const std:
 }
 
 void read_drives(const Table& root, Scene& scene) {
-  const Constants constants = read_constants(root);
-  for (const Table& t : root.tables(tables::kDrive))
-    scene.drives.push_back(read_drive(t, constants, scene, root.has(tables::kTrajectory)));
+  const std::vector<Table> all = root.tables(tables::kDrive);
+  for (const Table& t : all)
+    scene.drives.push_back(read_drive(t, scene, root.has(tables::kTrajectory)));
+  const Names names = names_for_formulas(root, all, scene);
+  for (size_t i = 0; i < all.size(); ++i) {
+    Drive& drive = scene.drives[i];
+    if (all[i].has(kFormula))
+      read_formula(all[i], names, drive.until.value_or(scene.time.end), drive);
+  }
 }
 
 std::array<double, 2> range_of(const std::function<fem::Motion(double)>& motion, double end) {

@@ -240,14 +240,15 @@ const io::Key& kMassPoint = io::key("point_mass", "point")
                                     "Location of the point mass: a material point, or a point in "
                                     "the axes of a rigid body.");
 const io::Key& kMass = io::key("point_mass", "mass")
-                           .number(positive("a mass", "kg"))
-                           .description("Mass of the point mass.");
+                           .number(io::not_negative("a mass", "kg"))
+                           .description("Mass of the point mass; 0: there is no point mass.");
 
 void read_point_mass(const Table& t, Scene& scene) {
   for (RigidBody& body : scene.rigid_bodies) {
     if (!t.says_one_of(kMassBody, std::vector{body.name})) continue;
     t.choice(kMassBody, names_of(scene.rigid_bodies));
-    body.masses.push_back({t.number(kMass), read_pair(t, kMassPoint)});
+    const RigidBody::AddedMass added{t.number(kMass), read_pair(t, kMassPoint)};
+    if (added.mass > 0) body.masses.push_back(added);
     return;
   }
   PointMass mass;
@@ -263,7 +264,7 @@ void read_point_mass(const Table& t, Scene& scene) {
     mass.point = read_point(t, kMassPoint, body, scene.time.end);
   }
   mass.mass = t.number(kMass);
-  scene.point_masses.push_back(mass);
+  if (mass.mass > 0) scene.point_masses.push_back(mass);
 }
 
 /// Reads [time], or [static] in its place.

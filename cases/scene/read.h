@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ void read_motion(const io::Table& root, const Follow& follow, Scene& scene);
 
 /// Reads the entries of [[joint]] without the checks that need all joints, see read_joints().
 std::vector<Joint> read_joint_list(const io::Table& root, const Scene& scene);
-/// Reads [constants] and [[drive]]; the time span of the run must be read before.
+/// Reads [constants]: values by their names.
+std::map<std::string, double> read_constants(const io::Table& root);
+/// Reads [[drive]]; the time span of the run must be read before.
 void read_drives(const io::Table& root, Scene& scene);
 
 /// Returns overrides with the absolute paths of the CSV files of drives, see overrides_of_files().

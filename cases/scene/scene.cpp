@@ -273,6 +273,7 @@ Scene read_parts(const io::CaseFile& file, const Follow& follow) {
   scene.file = file;
   scene.name = std::filesystem::path(file.path()).stem().string();
   scene.title = root.string(kTitle, scene.name);
+  read_constants(root);  // numbers of all tables may name them
   if (root.has(tables::kDomain))
     read_static(root, scene);
   else

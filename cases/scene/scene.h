@@ -58,6 +58,9 @@ struct Scene {
   Output output;                     ///< Output of the run.
   std::optional<Accuracy> accuracy;  ///< Input of the command `accuracy`; runs ignore it.
   std::map<std::string, Expectation> expect;  ///< Expected results by their names.
+
+  /// Sentences about contents of files that the reader ignored or doubts.
+  std::vector<std::string> notes;
   std::optional<io::CaseFile>
       file;  ///< Case file, for messages; absent for a scene made in memory.
 

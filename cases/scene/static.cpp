@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "cases/scene/materials/material.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
 #include "geometry/components/outline.h"
@@ -50,6 +51,7 @@ const Key& kLayers =
         .otherwise_as("all layers")
         .when("`outline` is a .dxf file")
         .description("Layers of the drawing that contain the outline of the domain.");
+const Key& kMaterial = material_key("domain");
 const Key& kThickness = io::key("domain", "thickness")
                             .number(positive("a thickness", "m"))
                             .otherwise(1.0)
@@ -123,20 +125,23 @@ const Key& kBearing = io::key("load.force", "bearing")
                               "True if a pin presses on half of the bore, with a pressure like the "
                               "cosine of the angle.");
 
-Region read_outline(const Table& t) {
+/// Reads the drawing of a domain, and appends notes about what it ignores.
+Region read_outline(const Table& t, std::vector<std::string>& notes) {
   io::DrawingSettings settings;
   if (t.has(kUnit)) settings.unit = io::find_length_unit(t.choice(kUnit))->metres;
   if (t.has(kLayers)) settings.layers = t.strings(kLayers);
   const std::string path = t.path_of(kOutline);
   try {
-    return region_of(io::read_drawing(path, settings));
+    io::DrawnOutlines drawn = io::read_drawing(path, settings);
+    notes.insert(notes.end(), drawn.notes.begin(), drawn.notes.end());
+    return region_of(std::move(drawn.rings));
   } catch (const Error& error) {
     const std::string what = error.what();
     t.fail(kOutline, what.starts_with(path) ? what : path + ": " + what);
   }
 }
 
-void read_shape(const Table& t, Domain& domain) {
+void read_shape(const Table& t, Domain& domain, std::vector<std::string>& notes) {
   if (t.has(kSize) + t.has(kPolygon) + t.has(kOutline) != 1)
     t.fail("a domain needs exactly one of `size` (length, height), `polygon` and `outline`");
   for (const Key* key : {&kUnit, &kLayers})
@@ -146,7 +151,8 @@ void read_shape(const Table& t, Domain& domain) {
     domain.bounds = {{0, 0}, {size[0], size[1]}};
     return;
   }
-  domain.shape = t.has(kOutline) ? read_outline(t) : Region{read_polygon(t, kPolygon), {}};
+  domain.shape = t.has(kOutline) ? read_outline(t, notes) : Region{read_polygon(t, kPolygon), {}};
+  domain.is_drawn = t.has(kOutline);
   domain.bounds = bounds_of(domain.shape.outer);
 }
 
@@ -262,11 +268,18 @@ void read_static(const Table& root, Scene& scene) {
   const Table t = root.table(tables::kDomain);
   Domain domain;
   domain.name = read_word(t, kName);
-  read_shape(t, domain);
+  read_shape(t, domain, scene.notes);
   domain.thickness = t.number(kThickness);
-  domain.youngs_modulus = t.number(kYoungsModulus);
-  domain.poisson_ratio = t.number(kPoissonRatio);
-  domain.density = t.number(kDensity);
+  std::optional<double> youngs_modulus, poisson_ratio, density;
+  if (t.has(kMaterial)) {
+    const Material& material = *find_material(t.choice(kMaterial));
+    youngs_modulus = material.youngs_modulus;
+    poisson_ratio = material.poisson_ratio;
+    density = material.density;
+  }
+  domain.youngs_modulus = t.number(kYoungsModulus, youngs_modulus);
+  domain.poisson_ratio = t.number(kPoissonRatio, poisson_ratio);
+  domain.density = t.number(kDensity, density);
   for (const Table& s : root.tables(tables::kSupport))
     domain.supports.push_back(read_support(s, domain));
   if (domain.supports.empty())

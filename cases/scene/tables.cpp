@@ -22,7 +22,7 @@ const io::Key& kGravity = io::key("", "gravity")
                                   "Acceleration of gravity: 2 components, in space 3. With a "
                                   "[domain] it defines the weight.");
 const io::Key& kConstants =
-    one("constants").description("Named constants for the formulas of drives.");
+    one("constants").description("Named constants for formulas of drives and of numbers.");
 const io::Key& kTime =
     one("time").description("Duration, time integration and initial state of the motion.");
 const io::Key& kStatic = one("static").description(

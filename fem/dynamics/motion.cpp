@@ -9,12 +9,9 @@
 #include "fem/dynamics/mesh_changes/event_times.h"
 #include "fem/dynamics/motion_archive.h"
 #include "fem/dynamics/motion_watch.h"
+#include "fem/solve/redundancy.h"
 
 namespace flexmorph::fem {
-
-Vec3 momentum_in_space(Workspace& model, const State& x) { return model.momentum(x); }
-
-Vec2 momentum(Workspace& model, const State& x) { return momentum_in_space(model, x).head<2>(); }
 
 namespace {
 
@@ -59,6 +56,9 @@ class Run {
 
  private:
   void begin() {
+    leave_out_redundant(model_,
+                        start_state(model_, moving_roots_, 0, Start::rigid, settings_.body_poses));
+    result_.redundant_joints = redundant_joints(model_);
     // Drives need not be defined after the end of the motion.
     x_ = start_state(model_, moving_roots_, 0, settings_.start, settings_.body_poses,
                      std::min(1e-4, 0.5 * settings_.end));
@@ -126,7 +126,9 @@ class Run {
   void see(const State& x, const Energies& e, bool stop) {
     keep(x, stop);
     model_.prepare(x);
-    observe_({model_, x, e, powers_, balance_.work(), balance_.dissipated(),
+    const bool unique = model_.redundant_rows().empty();
+    if (!unique) (shown_ = x).lambda = least_multipliers(model_, x);
+    observe_({model_, unique ? x : shown_, e, powers_, balance_.work(), balance_.dissipated(),
               balance_.energy_error(), stop, result_});
   }
 
@@ -290,6 +292,7 @@ class Run {
       integrator_->make_consistent(x_);
     see(x, e, at_stop);
     watch_.see(x_, e, powers_, balance_.energy_error(), h, at_stop, steps());
+    renew_left_out(model_, x_);
   }
 
   /// Continues from just before a discontinuity to the values after it. @returns the energies
@@ -341,7 +344,7 @@ class Run {
     event.change = change;
     const Vec2 tip(grid_of(*body).line_m(grid_of(*body).n_m()).value, 0);
     event.before = model_.energies(x_);
-    event.momentum_before = momentum_in_space(model_, x_);
+    event.momentum_before = model_.momentum(x_);
     const Vec3 tip_before = point_position(*body, x_, tip);
     const State before = x_;
     const LineGrid& lines = grid_of(*body);
@@ -350,7 +353,7 @@ class Run {
     MeshMap map = change_mesh(model_, *body, change, x_, growth.cell);
     integrator_->change_mesh(map, before, integrator_->balance(x_, separating_frequency(*body)));
     event.after = model_.energies(x_);
-    event.momentum_after = momentum_in_space(model_, x_);
+    event.momentum_after = model_.momentum(x_);
     event.tip_jump = (point_position(*body, x_, tip) - tip_before).norm();
     result_.events.push_back(event);
     integrator_->project_velocity(x_);
@@ -376,6 +379,7 @@ class Run {
   // Only for adaptive steps.
   std::optional<StepControl> control_;
   std::optional<DenseOutput> dense_;
+  State shown_;            // state for the observer
   State before_, within_;  // start of the step, and a state within it
   std::vector<double> between_;
   size_t next_between_ = 0;

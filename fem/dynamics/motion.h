@@ -155,6 +155,9 @@ struct MotionResult {
   /// Times at which the joints of a model with rigid bodies were nearly dependent (condition above
   /// 1e6), evaluated at every 25th step. Of consecutive findings only the worst one is stored.
   std::vector<Conditioning> near_singular;
+  /// Names of redundant joints, whose forces are not unique: the multipliers that the observer
+  /// receives are those of least norm (fem/solve/redundancy.h).
+  std::vector<std::string> redundant_joints;
 };
 
 /// Integrates the motion of a model from t = 0 (or from MotionSettings::memory) to its end. The
@@ -175,10 +178,5 @@ struct MotionResult {
 ///         failed step names the joints.
 MotionResult integrate(Workspace& model, std::span<const MovingRoot> moving_roots,
                        const MotionSettings& settings, const MotionObserver& observe);
-
-/// Returns the linear momentum of the bodies' own mass [kg m/s]; z = 0 in the plane.
-Vec3 momentum_in_space(Workspace& model, const State& x);
-/// Returns the x and y components of momentum_in_space() [kg m/s].
-Vec2 momentum(Workspace& model, const State& x);
 
 }  // namespace flexmorph::fem

@@ -44,7 +44,7 @@ void archive(Archive& memory, MeshEvent& e) {
 void archive(Archive& memory, MotionResult& r) {
   memory(r.smallest_step, r.largest_step, r.events, r.energy_error, r.energy_gain, r.start_change,
          r.alternation, r.cut, r.constraint_drift, r.velocity_drift, r.smallest_area_ratio,
-         r.near_singular);
+         r.near_singular, r.redundant_joints);
 }
 
 void archive_meshes(Archive& memory, Workspace& model, std::span<const MovingRoot> moving_roots) {
@@ -63,7 +63,11 @@ void archive_meshes(Archive& memory, Workspace& model, std::span<const MovingRoo
         model.set_element(body, grid.with_lines_m(lines_from(grid, kinds, locations), whole.t));
     }
   }
-  if (memory.is_restoring()) model.restore_cache(whole);
+  std::vector<int> redundant = model.redundant_rows(), left_out = model.left_out_rows();
+  memory(redundant, left_out);
+  if (!memory.is_restoring()) return;
+  if (!redundant.empty()) model.leave_out(redundant, left_out);
+  model.restore_cache(whole);
 }
 
 }  // namespace flexmorph::fem

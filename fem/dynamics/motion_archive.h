@@ -9,8 +9,9 @@ namespace flexmorph::fem {
 /// are set only at the end (MotionResult::final, counts and condition).
 void archive(Archive& memory, MotionResult& result);
 
-/// Saves or restores the meshes of the bodies with moving-root mesh control, and the time and the
-/// free lines for which all parts of the model were last prepared together. After restoring, the
+/// Saves or restores the meshes of the bodies with moving-root mesh control, the constraint rows
+/// that the model leaves out, and the time and the free lines for which all parts of the model were
+/// last prepared together. After restoring, the
 /// model is prepared for them.
 /// @throws Error (input) if the archive does not fit the mesh of a body.
 void archive_meshes(Archive& memory, Workspace& model, std::span<const MovingRoot> moving_roots);

@@ -5,7 +5,9 @@
 namespace flexmorph::fem {
 
 Model::Model(const Model& other)
-    : n_dofs_(other.n_dofs_),
+    : redundant_rows_(other.redundant_rows_),
+      left_out_rows_(other.left_out_rows_),
+      n_dofs_(other.n_dofs_),
       n_constraints_(other.n_constraints_),
       pattern_version_(other.pattern_version_),
       content_version_(other.content_version_),
@@ -94,6 +96,7 @@ void Model::number_dofs() {
     n_dofs_ += b.n_dofs();
   }
   const std::vector<BodyView> bodies = views();
+  const std::vector<int> first_rows_before = first_rows_;
   n_constraints_ = 0;
   first_rows_ = {0};
   for (const auto& joint : joints_) {
@@ -101,6 +104,7 @@ void Model::number_dofs() {
     n_constraints_ += joint->size();
     first_rows_.push_back(n_constraints_);
   }
+  renumber_redundant(first_rows_before);
   int n_turned = 0;
   for (const ModelForceElement& force_element : force_elements_) {
     force_element->bind(bodies);
@@ -108,6 +112,25 @@ void Model::number_dofs() {
   }
   ++pattern_version_;
   ++content_version_;
+}
+
+void Model::leave_out(std::vector<int> redundant, std::vector<int> left_out) {
+  redundant_rows_ = std::move(redundant);
+  left_out_rows_ = std::move(left_out);
+  ++pattern_version_;
+  ++content_version_;
+}
+
+/// A change of a mesh may change the number of rows of a joint. Redundant joints connect rigid
+/// bodies or edges and keep their rows, but the rows of later joints get other numbers.
+void Model::renumber_redundant(const std::vector<int>& first_rows_before) {
+  if (first_rows_before.size() != first_rows_.size()) return;  // a copy, or a first numbering
+  for (std::vector<int>* rows : {&redundant_rows_, &left_out_rows_})
+    for (int& row : *rows) {
+      const auto next =
+          std::upper_bound(first_rows_before.begin(), first_rows_before.end(), row) - 1;
+      row += first_rows_[static_cast<size_t>(next - first_rows_before.begin())] - *next;
+    }
 }
 
 bool Model::has_eulerian_lines() const {

@@ -70,6 +70,18 @@ class Model {
   /// Returns the first row of a joint in the constraints; first_row(joints().size()) is the number
   /// of constraints.
   int first_row(size_t joint) const { return first_rows_[joint]; }
+  /// Sets the constraint rows that depend on each other (redundant joints), and those of them that
+  /// are left out of Workspace::constraints() and of the matrices, so that the remaining rows are
+  /// independent. The multipliers of left out rows must be 0. Both lists are empty at first.
+  void leave_out(std::vector<int> redundant, std::vector<int> left_out);
+  /// Returns all rows that depend on each other, ascending, see leave_out().
+  const std::vector<int>& redundant_rows() const { return redundant_rows_; }
+  /// Returns the rows that are left out, ascending, see leave_out().
+  const std::vector<int>& left_out_rows() const { return left_out_rows_; }
+  /// Returns the number of constraint rows that are not left out.
+  int n_kept_constraints() const {
+    return n_constraints_ - static_cast<int>(left_out_rows_.size());
+  }
   /// Returns the force elements in the order in which they were added.
   const std::vector<ModelForceElement>& force_elements() const { return force_elements_; }
 
@@ -117,9 +129,11 @@ class Model {
   std::vector<std::unique_ptr<Joint>> joints_;
   std::vector<int> first_rows_ = {0};
   std::vector<ModelForceElement> force_elements_;
+  std::vector<int> redundant_rows_, left_out_rows_;
 
  private:
   void number_dofs();
+  void renumber_redundant(const std::vector<int>& first_rows_before);
 
   int n_dofs_ = 0, n_constraints_ = 0, pattern_version_ = 0, content_version_ = 0;
   bool scales_loads_ = true, scales_temperatures_ = true;

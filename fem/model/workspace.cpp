@@ -120,6 +120,15 @@ void Workspace::gather(const Body& body, int e, const State& mean, const VectorX
 }
 
 void Workspace::constraints(const State& x, Constraints& out) {
+  all_constraints(x, out);
+  if (left_out_rows_.empty()) return;
+  for (const int row : left_out_rows_) out.value[row] = out.rate[row] = out.acceleration[row] = 0;
+  for (auto& entry : out.jacobian)
+    if (std::binary_search(left_out_rows_.begin(), left_out_rows_.end(), entry.row()))
+      entry = {entry.row(), entry.col(), 0.0};
+}
+
+void Workspace::all_constraints(const State& x, Constraints& out) {
   out.value.resize(n_constraints());
   out.rate.resize(n_constraints());
   out.acceleration.resize(n_constraints());

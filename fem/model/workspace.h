@@ -81,8 +81,11 @@ class Workspace : public Model {
 
   /// Evaluates M q̈ + F(q, q̇) without constraint forces (n_dofs).
   void force(const State& x, VectorXd& out);
-  /// Evaluates all constraint rows.
+  /// Evaluates the constraint rows. Rows that are left out (Model::leave_out()) are 0, with an
+  /// entry 0 at each place of their Jacobian.
   void constraints(const State& x, Constraints& out);
+  /// Evaluates all constraint rows, also those that are left out of constraints().
+  void all_constraints(const State& x, Constraints& out);
   /// Adds the constraint force: out += Φ_qᵀ λ.
   static void add_constraint_force(const Constraints& c, const VectorXd& lambda, VectorXd& out);
 
@@ -99,6 +102,8 @@ class Workspace : public Model {
   ///
   /// [ scale · (w.q (F + Φ_qᵀ λ)_q + w.v F_v + w.a M)   Φ_qᵀ ]
   /// [ Φ_q                                              0    ]
+  ///
+  /// Rows of Φ_q that are left out have an entry 1 on the diagonal alone.
   void kkt(const State& x, const Constraints& c, const Weights& w, double scale, SparseMatrix& out);
 
   /// Recomputes the entries of the iteration matrix whose row and column are both chosen; all other
@@ -246,6 +251,7 @@ class Workspace : public Model {
   int built_version_ = -1;
   SparseMatrix pattern_;
   std::vector<int> joint_indices_;          // two per jacobian entry: (row, dof), (dof, row)
+  std::vector<int> left_out_indices_;       // diagonal entries of rows that are left out
   std::vector<int> stiffness_indices_;      // of the joints' (Φ_qᵀ λ)_q
   std::vector<int> force_element_indices_;  // of the tangents of the force elements
   // Work arrays.

@@ -230,6 +230,7 @@ void Workspace::build_pattern() {
     entries.emplace_back(n_dofs() + entry.row(), entry.col(), 1.0);
     entries.emplace_back(entry.col(), n_dofs() + entry.row(), 1.0);
   }
+  for (const int row : left_out_rows_) entries.emplace_back(n_dofs() + row, n_dofs() + row, 1.0);
   pattern_.resize(n, n);
   pattern_.setFromTriplets(entries.begin(), entries.end());
   pattern_.makeCompressed();
@@ -266,6 +267,9 @@ void Workspace::build_pattern() {
     joint_indices_.push_back(value_index(n_dofs() + entry.row(), entry.col()));
     joint_indices_.push_back(value_index(entry.col(), n_dofs() + entry.row()));
   }
+  left_out_indices_.clear();
+  for (const int row : left_out_rows_)
+    left_out_indices_.push_back(value_index(n_dofs() + row, n_dofs() + row));
   built_version_ = pattern_version();
 }
 
@@ -377,6 +381,7 @@ void Workspace::fill_joints(const State& x, double stiffness_scale, const Constr
     values[joint_indices_[2 * k]] += rows.jacobian[k].value();
     values[joint_indices_[2 * k + 1]] += columns.jacobian[k].value();
   }
+  for (const int value_index : left_out_indices_) values[value_index] = 1;
 }
 
 }  // namespace flexmorph::fem

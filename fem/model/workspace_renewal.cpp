@@ -52,6 +52,7 @@ void Workspace::renew_kkt(const State& x, const Constraints& c, const Weights& w
       values[joint_indices_[2 * k]] += c.jacobian[k].value();
       values[joint_indices_[2 * k + 1]] += c.jacobian[k].value();
     }
+  for (const int value_index : left_out_indices_) values[value_index] = 1;
 }
 
 void Workspace::renew_batch(const BatchIndices& value_indices, const State& x, const Weights& w,

@@ -67,49 +67,6 @@ bool surely_independent(const SparseMatrix& j) {
   return factor.info() == Eigen::Success && factor.vectorD().minCoeff() > kSurelyNew * kSurelyNew;
 }
 
-/// Removes rows that no others can span: rows with an entry in a column that no other row has, then
-/// rows for which this holds without the removed ones, and so on. A null vector is zero in the
-/// removed rows. Welded edges and open chains consist of such rows, so that the factors of the
-/// remaining rows are small.
-/// @returns the remaining rows (ascending)
-std::vector<int> entangled_rows(const SparseMatrix& j) {
-  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  const RowMajor by_row = j;
-  const auto counts = [](double entry) { return entry != 0; };
-  // Number of rows with an entry in each column.
-  std::vector<int> left(static_cast<size_t>(j.cols()), 0);
-  // Sum of the numbers of the rows with an entry in each column.
-  std::vector<long long> sum(static_cast<size_t>(j.cols()), 0);
-  for (int row = 0; row < by_row.outerSize(); ++row)
-    for (RowMajor::InnerIterator e(by_row, row); e; ++e)
-      if (counts(e.value())) {
-        ++left[static_cast<size_t>(e.col())];
-        sum[static_cast<size_t>(e.col())] += row;
-      }
-  std::vector<char> free(static_cast<size_t>(j.rows()), 0);
-  std::vector<int> alone;
-  for (int column = 0; column < j.cols(); ++column)
-    if (left[static_cast<size_t>(column)] == 1) alone.push_back(column);
-  while (!alone.empty()) {
-    const int column = alone.back();
-    alone.pop_back();
-    if (left[static_cast<size_t>(column)] != 1) continue;
-    const auto row = static_cast<int>(sum[static_cast<size_t>(column)]);
-    if (std::abs(j.coeff(row, column)) < kSeparatingEntry) continue;
-    free[static_cast<size_t>(row)] = 1;
-    for (RowMajor::InnerIterator e(by_row, row); e; ++e) {
-      if (!counts(e.value())) continue;
-      const auto c = static_cast<size_t>(e.col());
-      sum[c] -= row;
-      if (--left[c] == 1) alone.push_back(static_cast<int>(c));
-    }
-  }
-  std::vector<int> out;
-  for (int row = 0; row < j.rows(); ++row)
-    if (free[static_cast<size_t>(row)] == 0) out.push_back(row);
-  return out;
-}
-
 /// Returns the given rows of a matrix.
 SparseMatrix rows_of(const SparseMatrix& j, const std::vector<int>& rows) {
   SparseMatrix pick(static_cast<Eigen::Index>(rows.size()), j.rows());
@@ -222,7 +179,10 @@ double miss_of(const NullVector& z, const VectorXd& row_scale, const VectorXd& f
 
 std::string describe(const DependentGroup& g) {
   const bool one = g.joints.size() == 1;
-  std::string out = list_joints(g.joints);
+  // Of joints that contradict each other, the last one has most likely been added by mistake.
+  std::vector<std::string> joints = g.joints;
+  if (g.contradictory) std::rotate(joints.begin(), joints.end() - 1, joints.end());
+  std::string out = list_joints(joints);
   if (!g.contradictory) {
     out += one ? " constrains " : " constrain ";
     out += g.surplus == 1 ? "one degree of freedom"
@@ -245,13 +205,51 @@ bool Diagnosis::misses_positions() const {
   return std::any_of(groups.begin(), groups.end(), [](const auto& g) { return g.miss > 0; });
 }
 
+std::vector<int> entangled_rows(const SparseMatrix& j) {
+  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  const RowMajor by_row = j;
+  const auto counts = [](double entry) { return entry != 0; };
+  // Number of rows with an entry in each column.
+  std::vector<int> left(static_cast<size_t>(j.cols()), 0);
+  // Sum of the numbers of the rows with an entry in each column.
+  std::vector<long long> sum(static_cast<size_t>(j.cols()), 0);
+  for (int row = 0; row < by_row.outerSize(); ++row)
+    for (RowMajor::InnerIterator e(by_row, row); e; ++e)
+      if (counts(e.value())) {
+        ++left[static_cast<size_t>(e.col())];
+        sum[static_cast<size_t>(e.col())] += row;
+      }
+  std::vector<char> free(static_cast<size_t>(j.rows()), 0);
+  std::vector<int> alone;
+  for (int column = 0; column < j.cols(); ++column)
+    if (left[static_cast<size_t>(column)] == 1) alone.push_back(column);
+  while (!alone.empty()) {
+    const int column = alone.back();
+    alone.pop_back();
+    if (left[static_cast<size_t>(column)] != 1) continue;
+    const auto row = static_cast<int>(sum[static_cast<size_t>(column)]);
+    if (std::abs(j.coeff(row, column)) < kSeparatingEntry) continue;
+    free[static_cast<size_t>(row)] = 1;
+    for (RowMajor::InnerIterator e(by_row, row); e; ++e) {
+      if (!counts(e.value())) continue;
+      const auto c = static_cast<size_t>(e.col());
+      sum[c] -= row;
+      if (--left[c] == 1) alone.push_back(static_cast<int>(c));
+    }
+  }
+  std::vector<int> out;
+  for (int row = 0; row < j.rows(); ++row)
+    if (free[static_cast<size_t>(row)] == 0) out.push_back(row);
+  return out;
+}
+
 Diagnosis diagnose(Workspace& model, const State& x) {
   Diagnosis out;
   out.unknowns = model.n_dofs();
   out.constraints = model.n_constraints();
   if (out.constraints == 0) return out;
   ScaledConstraints rows;
-  rows.evaluate(model, x);
+  rows.evaluate(model, x, ScaledConstraints::Rows::all);
   std::vector<NullVector> null_vectors;
   factor_rows(rows.jacobian(), out.independent, null_vectors);
   out.rank = static_cast<int>(out.independent.size());
@@ -316,16 +314,13 @@ std::string describe(const Diagnosis& diagnosis) {
   return out;
 }
 
-void require_independent(const Diagnosis& diagnosis) {
-  if (!diagnosis.is_independent()) throw Error::input(describe(diagnosis));
-}
-
 Conditioning ConstraintWatch::look(const State& x) {
   Conditioning out{x.t, 1, {}};
   const int m = model_.n_constraints();
   if (m == 0) return out;
   rows_.evaluate(model_, x);
   gram_ = rows_.jacobian() * rows_.jacobian().transpose();
+  for (const int row : model_.left_out_rows()) gram_.coeffRef(row, row) = 1;
   if (version_ != model_.pattern_version()) {
     factor_.setShift(kShift);
     factor_.analyzePattern(gram_);

@@ -60,18 +60,21 @@ struct Diagnosis {
 /// @throws Error (numerical) when Φ or Φ_q contain numbers that are not finite.
 Diagnosis diagnose(Workspace& model, const State& x);
 
+/// Returns the rows of J (ScaledConstraints) without those that no others can span: rows with an
+/// entry in a column that no other row has, then rows for which this holds without the removed
+/// ones, and so on. A null vector is zero in the removed rows. Welded edges and open chains consist
+/// of such rows; the remaining rows (ascending) belong to closed loops.
+std::vector<int> entangled_rows(const SparseMatrix& j);
+
 /// Returns the number of unknowns minus the rank of Φ_q.
 int degrees_of_freedom(Workspace& model, const State& x);
 
 /// Returns a text with one line per group: "joints 'pin', 'drive' hold the same degree of freedom"
 /// or "joints
-/// ... contradict each other: they miss by 0.012 m". Contradictions come first, and the text has at
+/// ... contradict each other: their error is 0.012 m". Contradictions come first, and name the last
+/// joint of the model first. The text has at
 /// most ten groups. It is empty if all rows are independent.
 std::string describe(const Diagnosis& diagnosis);
-
-/// Throws an error if rows are dependent.
-/// @throws Error (input) with the text of describe().
-void require_independent(const Diagnosis& diagnosis);
 
 /// Measure of how close the rows of Φ_q are to linear dependence.
 struct Conditioning {

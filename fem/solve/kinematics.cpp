@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fem/solve/assembly.h"
+#include "fem/solve/redundancy.h"
 #include "geometry/text.h"
 
 namespace flexmorph::fem {
@@ -11,6 +12,8 @@ namespace {
 
 // condition above which a failure is attributed to a singular position
 constexpr double kSingular = 300;
+// largest substep that passes a singular position of the rows that are kept, in largest substeps
+constexpr double kCrossing = 1e-3;
 
 std::string time_text(double t) { return formatted("%.7g", t); }
 
@@ -23,7 +26,6 @@ Kinematics::Kinematics(Workspace& model, State start, const KinematicsSettings& 
     throw Error::input(
         "kinematics: the step sizes and the correction must be positive, and smallest_step must "
         "not be above largest_step");
-  const int n = model.n_dofs();
   assemble(model, x_);
   const Diagnosis diagnosis = diagnose(model, x_);
   if (diagnosis.is_contradictory()) throw Error::input("kinematics: " + describe(diagnosis));
@@ -33,14 +35,25 @@ Kinematics::Kinematics(Workspace& model, State start, const KinematicsSettings& 
                        (left == 1 ? " degree of freedom is" : " degrees of freedom are") +
                        " not driven" + (hint.empty() ? "" : "; " + hint));
   }
-  index_of_row_.assign(static_cast<size_t>(model.n_constraints()), -1);
-  for (int i = 0; i < n; ++i)
-    index_of_row_[static_cast<size_t>(diagnosis.independent[static_cast<size_t>(i)])] = i;
+  if (!diagnosis.is_independent()) leave_out_redundant(model, x_);
+  choose_rows();
   x_.lambda.setZero(model.n_constraints());
   rows_.evaluate(model_, x_);
   size_ = model_size(rows_.scales(), x_.q);
-  if (!newton(x_, sign_)) give_up(x_.t);
+  if (!newton(x_)) give_up(x_.t);
+  determinants_ = blocks_.of(square_);
   find_rates(x_);
+}
+
+/// Numbers the rows that the model keeps.
+void Kinematics::choose_rows() {
+  const std::vector<int>& left_out = model_.left_out_rows();
+  index_of_row_.assign(static_cast<size_t>(model_.n_constraints()), -1);
+  int kept = 0;
+  for (int row = 0; row < model_.n_constraints(); ++row)
+    if (!std::binary_search(left_out.begin(), left_out.end(), row))
+      index_of_row_[static_cast<size_t>(row)] = kept++;
+  square_.resize(0, 0);
 }
 
 bool Kinematics::factorize(const State& x) {
@@ -54,7 +67,18 @@ bool Kinematics::factorize(const State& x) {
   const bool fresh = square_.rows() == 0;
   square_.resize(j.cols(), j.cols());
   square_.setFromTriplets(entries_.begin(), entries_.end());
-  if (fresh) lu_.analyzePattern(square_);
+  if (fresh) {
+    lu_.analyzePattern(square_);
+    blocks_.analyze(square_);
+    has_redundant_.assign(static_cast<size_t>(blocks_.n_blocks()), 0);
+    std::vector<char> redundant(static_cast<size_t>(square_.rows()), 0);
+    for (const int row : model_.redundant_rows())
+      if (const int kept = index_of_row_[static_cast<size_t>(row)]; kept >= 0)
+        redundant[static_cast<size_t>(kept)] = 1;
+    for (int b = 0; b < blocks_.n_blocks(); ++b)
+      for (const int row : blocks_.rows_of(b))
+        if (redundant[static_cast<size_t>(row)]) has_redundant_[static_cast<size_t>(b)] = 1;
+  }
   lu_.factorize(square_);
   return lu_.info() == Eigen::Success;
 }
@@ -71,15 +95,12 @@ void Kinematics::solve(const VectorXd& right, VectorXd& out) const {
   out.array() /= rows_.scales().array();
 }
 
-bool Kinematics::newton(State& x, double& sign) {
+bool Kinematics::newton(State& x) {
   double last = 0;
   for (int iteration = 0; iteration < 12; ++iteration) {
     if (!factorize(x)) return false;
     // quadratic convergence: the next correction is round-off
-    if (iteration > 0 && last <= 1e-11 * size_) {
-      sign = lu_.signDeterminant();
-      return true;
-    }
+    if (iteration > 0 && last <= 1e-11 * size_) return true;
     solve(-rows_.unscaled().value, correction_);
     const double now = rows_.scales().cwiseProduct(correction_).lpNorm<Eigen::Infinity>();
     if (!std::isfinite(now) || now > 1e3 * size_) return false;
@@ -88,6 +109,19 @@ bool Kinematics::newton(State& x, double& sign) {
     last = now;
   }
   return false;
+}
+
+bool Kinematics::stays_on_branch(const State& end) {
+  const std::vector<Determinant> at_end = blocks_.of(square_);
+  middle_ = end;
+  middle_.t = 0.5 * (x_.t + end.t);
+  middle_.q = 0.5 * (x_.q + end.q);
+  factorize(middle_);
+  const int block = block_near_other_branch(determinants_, blocks_.of(square_), at_end);
+  const bool is_short = std::abs(end.t - x_.t) <= kCrossing * settings_.largest_step;
+  if (block >= 0 && !(has_redundant_[static_cast<size_t>(block)] && is_short)) return false;
+  determinants_ = at_end;
+  return factorize(end);
 }
 
 void Kinematics::find_rates(State& x) {
@@ -104,19 +138,18 @@ bool Kinematics::step_to(double t) {
   const VectorXd predicted = trial_.q;
   const VectorXd& scales = rows_.scales();
   const double motion = scales.cwiseProduct(predicted - x_.q).lpNorm<Eigen::Infinity>();
-  double sign = 0;
-  if (!newton(trial_, sign) || sign != sign_) return false;
+  if (!newton(trial_)) return false;
   const double corrected = scales.cwiseProduct(trial_.q - predicted).lpNorm<Eigen::Infinity>();
   if (corrected > settings_.correction * std::max(motion, 0.2 * size_)) return false;
-  VectorXd surplus = rows_.misses();
-  for (size_t i = 0; i < index_of_row_.size(); ++i)
-    if (index_of_row_[i] >= 0) surplus[static_cast<Eigen::Index>(i)] = 0;
-  if (surplus.lpNorm<Eigen::Infinity>() > 1e-9 * size_)
-    throw Error::numerical(
-        "kinematics: constraints that are redundant at the start contradict the others at t = " +
-        time_text(t) + " s: " + list_joints(heaviest_joints(model_, surplus, 0.01)));
+  if (left_out_miss(model_, trial_.q, t).is_large || !stays_on_branch(trial_)) return false;
   find_rates(trial_);
   std::swap(x_, trial_);
+  const int version = model_.pattern_version();
+  renew_left_out(model_, x_);
+  if (model_.pattern_version() == version) return true;
+  choose_rows();
+  factorize(x_);
+  determinants_ = blocks_.of(square_);
   return true;
 }
 
@@ -132,6 +165,13 @@ void Kinematics::give_up(double refused) {
   }
   // The position is not singular. If only the time is advanced, the joint that jumps has the
   // largest violation.
+  trial_ = x_;
+  trial_.t = refused;
+  trial_.q += (refused - x_.t) * x_.v;
+  if (newton(trial_))
+    if (const LeftOutMiss miss = left_out_miss(model_, trial_.q, refused); miss.is_large)
+      throw Error::numerical(where + "joint '" + miss.joint +
+                             "': this redundant joint contradicts the others there");
   trial_ = x_;
   trial_.t = refused;
   rows_.evaluate(model_, trial_);

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseLU>
 
+#include "fem/solve/block_determinants.h"
 #include "fem/solve/diagnosis.h"
 
 namespace flexmorph::fem {
@@ -26,12 +27,14 @@ struct KinematicsSettings {
 ///
 /// the positions by Newton's method from q + h v + ½ h² a, up to round-off (1e-12 of the model's
 /// size), the rates with the factors at the same q. A substep is halved where Newton's method does
-/// not converge, where it corrects the prediction too much, and where the sign of det Φ_q changes.
-/// Therefore the path stays on its branch, and it ends at a singular position (dead centre, change
-/// point). A determinant that touches zero between two substeps without a change of sign is not
-/// detected.
+/// not converge, where it corrects the prediction too much, and where the sign of the determinant
+/// of a block of Φ_q changes (BlockDeterminants). Therefore the path stays on its branch, and it
+/// ends at a singular position (dead centre, change point). A determinant that touches zero between
+/// two substeps without a change of sign is not detected.
 ///
-/// Redundant rows are left out of the equations and checked at every time.
+/// Redundant rows are left out of the equations and checked at every time. They are chosen as in
+/// fem/solve/redundancy.h, and they determine the branch after a singular position of the other
+/// rows, which the path passes with a short substep.
 class Kinematics {
  public:
   /// Assembles the start (fem/solve/assembly.h); the model must outlive this object.
@@ -57,7 +60,12 @@ class Kinematics {
  private:
   /// Makes a step to time t; returns false, with x_ unchanged, when the step is rejected.
   bool step_to(double t);
-  bool newton(State& x, double& sign);
+  void choose_rows();
+  bool newton(State& x);
+  /// Returns true if no block comes to another branch, or near one, on the way from the last state,
+  /// except for blocks with redundant rows in a short step. The factors of `end` exist before and,
+  /// if true is returned, after the call.
+  bool stays_on_branch(const State& end);
   bool factorize(const State& x);
   void solve(const VectorXd& right, VectorXd& out) const;
   void find_rates(State& x);
@@ -66,10 +74,12 @@ class Kinematics {
 
   Workspace& model_;
   KinematicsSettings settings_;
-  State x_, trial_;
+  State x_, trial_, middle_;
   int n_steps_ = 0;
-  double sign_ = 0;  // sign of det Φ_q on this branch
-  double size_ = 1;  // size of the model [m]
+  BlockDeterminants blocks_;
+  std::vector<Determinant> determinants_;  // of the blocks, on this branch
+  std::vector<char> has_redundant_;        // for every block
+  double size_ = 1;                        // size of the model [m]
   // row in the square matrix of every constraint row; -1: left out
   std::vector<int> index_of_row_;
   ScaledConstraints rows_;

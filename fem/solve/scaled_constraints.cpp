@@ -6,13 +6,16 @@
 
 namespace flexmorph::fem {
 
-void ScaledConstraints::evaluate(Workspace& model, const State& x) {
+void ScaledConstraints::evaluate(Workspace& model, const State& x, Rows which) {
   const int n = model.n_dofs(), m = model.n_constraints();
   if (version_ != model.pattern_version()) {
     scales_ = model.scales();
     version_ = model.pattern_version();
   }
-  model.constraints(x, c_);
+  if (which == Rows::all)
+    model.all_constraints(x, c_);
+  else
+    model.constraints(x, c_);
   scaled_.clear();
   for (const auto& entry : c_.jacobian) {
     if (!std::isfinite(entry.value()) || !std::isfinite(c_.value[entry.row()]))

@@ -13,9 +13,12 @@ namespace flexmorph::fem {
 /// written. A row of zeros keeps R_i = 1.
 class ScaledConstraints {
  public:
+  /// Rows that are evaluated: without those that the model leaves out, which are zero
+  /// (Model::leave_out()), or all.
+  enum class Rows { kept, all };
   /// Evaluates the constraints at a state and scales them.
   /// @throws Error (numerical) naming the joint when Φ or Φ_q contain numbers that are not finite.
-  void evaluate(Workspace& model, const State& x);
+  void evaluate(Workspace& model, const State& x, Rows which = Rows::kept);
 
   /// Returns the constraint rows before scaling.
   const Constraints& unscaled() const { return c_; }

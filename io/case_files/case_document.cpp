@@ -11,6 +11,7 @@
 #include "io/case_files/case_forms.h"
 #include "io/case_files/case_parser.h"
 #include "io/case_files/other_terms.h"
+#include "io/files.h"
 
 namespace flexmorph::io {
 namespace {
@@ -243,12 +244,15 @@ std::string nearest(const std::string& word, std::span<const std::string> known)
 
 std::string located(const CaseNode& node, const std::string& key_path) {
   constexpr size_t kMaxLineLength = 60;
-  if (node.is_option) return node.location;  // it contains key and value already
+  const bool computed = !node.text.empty() && (node.kind == CaseNode::Kind::number ||
+                                               node.kind == CaseNode::Kind::integer);
+  const std::string number = computed ? " (" + to_text(node.number) + ")" : "";
+  if (node.is_option) return node.location + number;  // it contains key and value already
   if (node.kind == CaseNode::Kind::table) return node.location + ": [" + key_path + "]";
   if (is_list_of_tables(node)) return node.location + ": [[" + key_path + "]]";
   const bool fits = node.shown.size() <= kMaxLineLength;
   return node.location + ": " + key_path + " = " +
-         (fits ? node.shown : node.shown.substr(0, kMaxLineLength - 3) + "...");
+         (fits ? node.shown : node.shown.substr(0, kMaxLineLength - 3) + "...") + number;
 }
 
 CaseDocument::CaseDocument(const std::string& file)

@@ -25,16 +25,20 @@ struct CaseNode {
 
   std::string key;                ///< Name of the key in its table; empty for entries of lists.
   Kind kind = Kind::table;        ///< Type of the value.
-  std::string text;               ///< Contents of a text.
+  std::string text;               ///< Contents of a text, also of one that gives a number.
   double number = 0;              ///< Value of an integer or a number.
   int64_t integer = 0;            ///< Value of an integer or a boolean (0, 1).
   bool is_inline = false;         ///< True for a table in braces.
   std::vector<CaseNode> entries;  ///< Entries of a table or a list.
 
-  std::string location;    ///< Location, such as "cases/four_bar.toml:14:13", or "--set KEY=VALUE".
-  std::string shown;       ///< Value as it is written in the file: "-0.002", "[10, 2]".
-  unsigned line = 0;       ///< Line in the file, by which messages are sorted.
-  bool is_option = false;  ///< True if the value was set by a --set option.
+  std::string location;  ///< Location, such as "cases/four_bar.toml:14:13", or "--set KEY=VALUE".
+  std::string shown;     ///< Value as it is written in the file: "-0.002", "[10, 2]".
+  unsigned line = 0;     ///< Line in the file, by which messages are sorted.
+  std::string unit;      ///< Unit of a number that a text gives, such as "mm"; else empty.
+
+  /// Why a text is not a number, although its key takes numbers; else empty.
+  std::string problem;
+  bool is_option = false;               ///< True if the value was set by a --set option.
   mutable std::set<std::string> asked;  ///< Keys of a table that readers have read or looked for.
   mutable bool visited = false;         ///< True if a reader has accessed this table.
   mutable std::vector<CaseNote> notes;  ///< Notes of readers, in the order in which keys were read.
@@ -79,6 +83,9 @@ struct CaseDocument {
   /// sentence of each key as a comment.
   std::string explained_text() const;
 
+  /// Replaces texts by numbers wherever keys take numbers: formulas of [constants], and numbers
+  /// with a unit, which are converted to SI units. All overrides must have been applied.
+  void read_number_texts();
   /// Replaces former names of keys and words by their present names, with a warning for each.
   void rename_former_names();
 
@@ -89,8 +96,9 @@ struct CaseDocument {
   std::vector<std::string> former_names;
 };
 
-/// Returns a value with its location, "cases/four_bar.toml:14:13: body.thickness = -0.002". For a
-/// table the text contains only its path.
+/// Returns a value with its location, "cases/four_bar.toml:14:13: body.thickness = -0.002". If a
+/// text gives a number, the number follows in parentheses. For a table the text contains only its
+/// path.
 std::string located(const CaseNode& node, const std::string& key_path);
 
 /// Returns the labels of the entries in a list of tables. The label is the `name` of the entry, or

@@ -73,7 +73,6 @@ bool Table::is_list_of_strings(const Key& key) const {
 double Table::number(const Key& key, std::optional<double> computed) const {
   const Quantity& quantity = location_->form(key, Form::Kind::number).quantity;
   return location_->value<double>(key, computed, quantity.allowed(), [&](const CaseNode& node) {
-    if (node.kind == Kind::text) fail(key, quantity.allowed() + kNoQuotes);
     return read_number(node, quantity);
   });
 }
@@ -108,7 +107,7 @@ std::string Table::choice(const Key& key, std::span<const std::string> allowed,
   const auto read = [&](const CaseNode& node) -> std::optional<std::string> {
     if (node.kind != Kind::text) return {};
     if (std::find(allowed.begin(), allowed.end(), node.text) != allowed.end()) return node.text;
-    fail(key, one_of(noun, allowed, node.text));
+    fail(key, one_of(noun, allowed, node.text) + refusal_of_number(node, {}));
   };
   return location_->value<std::string>(key, computed, one_of(noun, allowed), read);
 }
@@ -246,6 +245,12 @@ std::string Table::absolute(const Key& key) const {
   return std::filesystem::absolute(path_of(key)).string();
 }
 
+std::string Table::subject_of(const Key& key) const {
+  const CaseNode* node = location_->find(key.name);
+  const std::string full = location_->full(key.name);
+  return node ? io::located(*node, full) : location() + ": " + full;
+}
+
 void Table::fail(const Key& key, const std::string& allowed) const {
   location_->fail(key.name, allowed);
 }
@@ -262,6 +267,7 @@ CaseFile::CaseFile(const std::string& path, std::span<const std::string> overrid
     document->apply(change);
     document->rename_former_names();
   }
+  document->read_number_texts();
   const CaseNode* root = &document->root;
   root->visited = true;
   root_ = std::make_shared<Table::Location>(Table::Location{std::move(document), root, "", ""});

@@ -100,6 +100,9 @@ class Table {
   /// Records the value of a missing key that is computed only later, for the text of explained().
   void record(const Key& key, const Value& value) const;
 
+  /// Returns the beginning of a sentence about the value of a key:
+  /// "<file:line:column>: <path.key> = <value>".
+  std::string subject_of(const Key& key) const;
   /// Throws an error about the value of a key.
   /// @throws Error (input) "<file:line:column>: <path.key> = <value>: <allowed>".
   [[noreturn]] void fail(const Key& key, const std::string& allowed) const;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "io/case_files/other_terms.h"
+#include "io/case_files/unit.h"
 #include "io/files.h"
 
 namespace flexmorph::io {
@@ -16,6 +17,13 @@ using Kind = CaseNode::Kind;
 
 bool is_number(const CaseNode& node) {
   return node.kind == Kind::number || node.kind == Kind::integer;
+}
+
+/// Returns true if a number has no unit, or one that measures the quantity.
+bool unit_fits(const CaseNode& node, const Quantity& quantity) {
+  if (node.unit.empty()) return true;
+  const std::optional<Unit> wanted = read_unit(quantity.unit), given = read_unit(node.unit);
+  return wanted && given && wanted->dimension == given->dimension;
 }
 
 /// Returns true if a single value (an entry of a list, or no list) has a form.
@@ -92,7 +100,7 @@ std::string allowed_one(const CaseNode& node, const Form& form, const std::strin
   switch (form.kind) {
     case Form::Kind::number:
       if (!form.or_name.empty()) return number_or_name(form);
-      return form.quantity.allowed() + (node.kind == Kind::text && !form.is_list ? kNoQuotes : "");
+      return form.quantity.allowed();
     case Form::Kind::integer:
       return whole_number(form);
     case Form::Kind::boolean:
@@ -114,6 +122,8 @@ std::string allowed_one(const CaseNode& node, const Form& form, const std::strin
 
 std::string allowed(const CaseNode& node, const Form& form, const std::string& full) {
   std::string each = allowed_one(node, form, full);
+  if (form.kind == Form::Kind::number || form.kind == Form::Kind::integer)
+    each += refusal_of_number(node, form.quantity);
   if (!form.is_list) return each;
   if (form.columns > 0) each = "lists of " + to_text(form.columns) + " numbers; " + each;
   return list_of(form) + each;
@@ -217,8 +227,21 @@ class BookReader {
 }  // namespace
 
 std::optional<double> read_number(const CaseNode& node, const Quantity& quantity) {
-  if (!is_number(node)) return {};
+  if (!is_number(node) || !unit_fits(node, quantity)) return {};
   return quantity.holds(node.number) ? std::optional(node.number) : std::nullopt;
+}
+
+std::string refusal_of_number(const CaseNode& node, const Quantity& quantity) {
+  for (const CaseNode& entry : node.entries)
+    if (std::string out = refusal_of_number(entry, quantity); !out.empty()) return out;
+  const bool misfit = is_number(node) && !unit_fits(node, quantity);
+  if (!misfit && node.problem.empty()) return "";
+  const std::string why =
+      misfit ? "the unit '" + node.unit + "' of '" + node.text + "' does not fit" : node.problem;
+  const std::string units = read_unit(quantity.unit)
+                                ? "a number with a unit (" + units_like(quantity.unit) + ") or "
+                                : "";
+  return "; " + why + "; in quotes, " + units + "a formula of the constants is allowed";
 }
 
 std::optional<int> read_integer(const CaseNode& node, const Form& form) {

@@ -11,7 +11,8 @@
 /// Checks of the values in a case file against the declared forms of their keys.
 namespace flexmorph::io {
 
-/// Returns the number of a node, or nothing if it is not a number that the quantity allows.
+/// Returns the number of a node, or nothing if it is not a number that the quantity allows, or has
+/// a unit that does not fit.
 std::optional<double> read_number(const CaseNode& node, const Quantity& quantity);
 /// Returns the integer of a node, or nothing if it is not an integer within the limits of the form.
 std::optional<int> read_integer(const CaseNode& node, const Form& form);
@@ -30,8 +31,9 @@ std::string one_of(const std::string& noun, std::span<const std::string> allowed
 /// Returns the allowed words, and the one that is most similar to `found`.
 std::string one_of(const std::string& noun, std::span<const std::string> allowed,
                    const std::string& found);
-/// Text that follows the allowed numbers in a message if the file has a text instead of a number.
-inline constexpr const char* kNoQuotes = "; a number is written without quotes";
+/// Returns the end of a message about a text, or the first such entry of a list, that gives no
+/// number: the reason, and what is allowed. The result is empty if there is no such text.
+std::string refusal_of_number(const CaseNode& node, const Quantity& quantity);
 
 /// A complaint about a case file.
 struct Complaint {

@@ -57,7 +57,7 @@ struct Table::Location {
     const std::optional<T> missing = computed ? computed : fallback_of<T>(key);
     if (!node && !missing) fail_missing(key.name, allowed);
     const std::optional<T> found = node ? read(*node) : missing;
-    if (!found) fail(key.name, allowed);
+    if (!found) fail(key.name, allowed + refusal_of_number(*node, number_of(key)));
     if constexpr (std::is_constructible_v<Value, T>)
       note(key, node ? "" : toml_text(*found));
     else
@@ -88,6 +88,13 @@ struct Table::Location {
   }
 
  private:
+  /// Returns the limits of the numbers that a key takes.
+  static Quantity number_of(const Key& key) {
+    for (const Form& form : key.forms)
+      if (form.kind == Form::Kind::number) return form.quantity;
+    return {};
+  }
+
   /// Returns the fallback with which a key is declared, if there is one.
   template <class T>
   static std::optional<T> fallback_of(const Key& key) {

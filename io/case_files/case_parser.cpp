@@ -174,7 +174,7 @@ std::string hint_of(const std::string& reason, const std::string& line, size_t c
   if (saw == ';') return "a line must not end with a semicolon";
   if (behind_number && std::isalpha(at(column - 1)) &&
       reason.find("comment or whitespace") != std::string::npos)
-    return "a number is given in SI units, without the name of the unit";
+    return "a number with a unit is a text in quotes, such as \"0.5 m\"";
   return "";
 }
 
@@ -213,6 +213,25 @@ CaseNode parse_case(const std::string& text, const std::string& file) {
   }
 }
 
+namespace {
+
+/// Returns true for a number with a unit and for a formula.
+bool is_unquoted_number(const std::string& value) {
+  const auto is_of = [](unsigned char c) {
+    return std::isalnum(c) || c > 127 ||
+           std::string_view(" _.+-*/^()").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (!std::all_of(value.begin(), value.end(), is_of)) return false;
+  const bool has_letter = std::any_of(value.begin(), value.end(),
+                                      [](unsigned char c) { return std::isalpha(c) || c > 127; });
+  const bool has_operator = value.find_first_of("+-*/^(") != std::string::npos;
+  const bool starts_as_number =
+      !value.empty() && std::string_view("0123456789.+-").find(value[0]) != std::string_view::npos;
+  return has_operator || (has_letter && starts_as_number);
+}
+
+}  // namespace
+
 CaseNode parse_option(const std::string& value, const std::string& option) {
   // A word may be given without quotes, because shells remove them.
   const bool word = is_bare_key(value) && std::isalpha(static_cast<unsigned char>(value[0])) &&
@@ -227,6 +246,8 @@ CaseNode parse_option(const std::string& value, const std::string& option) {
     node.is_option = true;
     return node;
   } catch (const toml::parse_error& e) {
+    // The shell removes the quotes of "12 mm" and "2*h".
+    if (is_unquoted_number(value)) return parse_option(in_quotes(value), option);
     throw Error::input(option + ": VALUE is not TOML: " + std::string(e.description()));
   }
 }

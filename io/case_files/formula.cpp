@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "geometry/base.h"
+#include "geometry/text.h"
 #include "io/case_files/formula_graph.h"
 
 namespace flexmorph::io {
@@ -82,8 +83,14 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 ///   operand  number | name | function(sum {, sum}) | (sum)
 class Parser {
  public:
-  Parser(const std::string& text, const std::map<std::string, double>& constants, Graph& graph)
-      : text_(text), constants_(constants), graph_(graph) {}
+  /// @param open  names of the formulas that are being read, each a part of the one before
+  Parser(const std::string& text, const std::map<std::string, double>& constants,
+         const NamedFunctions& functions, Graph& graph, std::vector<std::string> open = {})
+      : text_(text),
+        constants_(constants),
+        functions_(functions),
+        graph_(graph),
+        open_(std::move(open)) {}
 
   Node run() {
     if (text_.size() > kMaxCharacters)
@@ -215,10 +222,42 @@ class Parser {
     if (name == "t") return graph_.time();
     if (name == "pi") return graph_.number(std::numbers::pi);
     const auto constant = constants_.find(name);
-    if (constant != constants_.end()) return graph_.number(constant->second);
-    refuse(start,
-           "'" + name +
-               "' is unknown: a formula may contain the time t, pi and the constants of the case");
+    const auto formula = functions_.formulas.find(name);
+    const auto function = functions_.functions.find(name);
+    const bool is_constant = constant != constants_.end(),
+               is_formula = formula != functions_.formulas.end(),
+               is_function = function != functions_.functions.end();
+    if (is_constant && (is_formula || is_function))
+      refuse(start, "'" + name + "' is the name of a constant and of a drive; rename one of them");
+    if (is_constant) return graph_.number(constant->second);
+    if (is_formula) return used(name, formula->second, start);
+    if (is_function) return graph_.external(function->second);
+    refuse(start, "'" + name +
+                      "' is unknown: a formula may contain the time t, pi, the constants and the "
+                      "other drives of the case");
+  }
+
+  /// Returns the node of another formula that this one uses.
+  Node used(const std::string& name, const std::string& text, size_t location) {
+    const auto cycle = std::find(open_.begin(), open_.end(), name);
+    if (cycle != open_.end()) {
+      const std::vector<std::string> names(cycle, open_.end());
+      refuse(location, names.size() == 1
+                           ? "the drive '" + name + "' uses itself"
+                           : "the drives " + joined(names, ", ", "'") + " use each other");
+    }
+    const auto known = graph_.named.find(name);
+    if (known != graph_.named.end()) return {&graph_, known->second};
+    std::vector<std::string> open = open_;
+    open.push_back(name);
+    try {
+      const Node out = Parser(text, constants_, functions_, graph_, std::move(open)).run();
+      graph_.named.emplace(name, out.index);
+      return out;
+    } catch (const Error& error) {
+      if (!open_.empty()) throw;  // only the outermost formula adds the name
+      refuse(location, "drive '" + name + "': " + error.what());
+    }
   }
 
   Node called(const std::string& name, size_t location) {
@@ -235,7 +274,9 @@ class Parser {
 
   const std::string& text_;
   const std::map<std::string, double>& constants_;
+  const NamedFunctions& functions_;
   Graph& graph_;
+  std::vector<std::string> open_;
   // positions of the next character and of the operation being created
   size_t at_ = 0, written_ = 0;
   int depth_ = 0;  // number of open parentheses
@@ -260,7 +301,8 @@ std::string Formula::refusal_of_name(const std::string& name) {
   return "";
 }
 
-Formula::Formula(std::string text, const std::map<std::string, double>& constants)
+Formula::Formula(std::string text, const std::map<std::string, double>& constants,
+                 const NamedFunctions& functions)
     : text_(std::move(text)) {
   for (const auto& [name, value] : constants) {
     const std::string why = refusal_of_name(name);
@@ -269,7 +311,7 @@ Formula::Formula(std::string text, const std::map<std::string, double>& constant
       throw Error::input("constant '" + name + "': its value is not a finite number");
   }
   Graph graph;
-  const Node value = Parser(text_, constants, graph).run();
+  const Node value = Parser(text_, constants, functions, graph).run();
   try {
     program_ = std::make_shared<const Program>(differentiated(value));
   } catch (const std::logic_error& e) {
@@ -282,6 +324,13 @@ Jet Formula::operator()(double t) const {
   program_->run(t, x);
   const auto& [value, rate, acceleration] = program_->results;
   return {x[value], x[rate], x[acceleration]};
+}
+
+double constant_value(const std::string& text, const std::map<std::string, double>& constants) {
+  Graph graph;
+  const Node value = Parser(text, constants, {}, graph).run();
+  if (!value.is_number()) refuse_formula(text, "a number cannot contain the time t");
+  return value->number;
 }
 
 int Formula::n_operations() const { return static_cast<int>(program_->operations.size()); }

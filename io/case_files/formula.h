@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,9 +15,21 @@ struct Jet {
   double value = 0, rate = 0, acceleration = 0;  ///< Value, first and second time derivative.
 };
 
+/// Functions of time that formulas can use by their names.
+struct NamedFunctions {
+  /// Value and derivatives of a function at a time [s].
+  using Function = std::function<Jet(double)>;
+
+  std::map<std::string, std::string> formulas;  ///< Texts of formulas.
+
+  /// Other functions, such as tables.
+  std::map<std::string, std::shared_ptr<const Function>> functions;
+};
+
 /// A function of the time t that is given as text, such as "0.5 + 0.1*sin(2*pi*t)^2".
 ///
 /// A formula may contain + - * / ^, parentheses, numbers, the time t, pi, the given constants, and
+/// functions of time with names, and
 /// the functions sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt. -t^2 means -(t^2); a
 /// sign after * / ^ applies only to the next operand (t^-2*3 is (t^-2)*3); a^b^c needs parentheses.
 /// The following functions have discontinuities of the value or of a derivative:
@@ -34,9 +47,13 @@ class Formula {
  public:
   /// Parses and differentiates a formula.
   /// @param constants  values by name; a name is a word without a meaning in formulas
+  /// @param functions  functions of time; rate and acceleration follow from the chain rule. A
+  /// formula
+  ///                   among them becomes a part of this formula, with its discontinuities
   /// @throws Error (input) with the formula, the position in it if known, and the error: syntax,
-  ///         unknown names, or values that are no real numbers.
-  explicit Formula(std::string text, const std::map<std::string, double>& constants = {});
+  ///         unknown names, formulas that use each other, or values that are no real numbers.
+  explicit Formula(std::string text, const std::map<std::string, double>& constants = {},
+                   const NamedFunctions& functions = {});
 
   /// Returns value, rate and acceleration at the time t [s]. It allocates no memory. The results
   /// may be infinite or NaN.
@@ -83,5 +100,9 @@ class Formula {
   std::string text_;
   std::shared_ptr<const Program> program_;
 };
+
+/// Returns the value of a formula of constants, which does not contain the time.
+/// @throws Error (input) as the constructor of Formula does, and for a formula of the time.
+double constant_value(const std::string& text, const std::map<std::string, double>& constants);
 
 }  // namespace flexmorph::io

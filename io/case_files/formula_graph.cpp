@@ -68,6 +68,10 @@ double evaluate(const Operation& o, double t, const double* x) {
       return std::pow(x[o.a], x[o.b]);
     case Op::call:
       return o.function->value(x[o.a]);
+    case Op::external: {
+      const Jet jet = (*o.external)(t);
+      return o.exponent == 0 ? jet.value : o.exponent == 1 ? jet.rate : jet.acceleration;
+    }
     case Op::atan2:
       return std::atan2(x[o.a], x[o.b]);
     case Op::choose:
@@ -202,6 +206,11 @@ Node Graph::number(double value) {
   return push({.op = Op::constant, .number = value});
 }
 
+Node Graph::external(const std::shared_ptr<const NamedFunctions::Function>& function) {
+  externals.push_back(function);
+  return push({.op = Op::external, .external = function.get()});
+}
+
 Node Graph::push(const Operation& operation) {
   std::array<double, 3> x{};
   Operation of_numbers = operation;
@@ -242,6 +251,9 @@ Node chain_rule(Node f, const std::map<int, Node>& derivatives) {
   if (x != f) return n * power(x, n - 1) * rate(x);
   if (f->op == Op::constant) return f.graph->number(0);
   if (f->op == Op::time) return f.graph->number(1);
+  if (f->op == Op::external)
+    return f.graph->push(
+        {.op = Op::external, .exponent = f->exponent + 1, .external = f->external});
   if (f->op == Op::add) return rate(a) + rate(b);
   if (f->op == Op::multiply) return rate(a) * b + a * rate(b);
   if (f->op == Op::scale) return f->number * rate(a);
@@ -278,6 +290,7 @@ Formula::Program differentiated(Node value) {
   if (out.operations.size() > kMaxOperations)
     throw std::length_error("it is too long: its value, rate and acceleration need more than " +
                             std::to_string(kMaxOperations) + " operations");
+  out.externals = value.graph->externals;
   out.results = {location_of(value.index), location_of(rate.index),
                  location_of(acceleration.index)};
   return out;

@@ -24,17 +24,19 @@ enum class Op {
   total_power,  ///< a^exponent, the exponent -1 or from 2 to 128
   power,        ///< a^b
   call,         ///< function(a)
+  external,     ///< the derivative of order `exponent` of a function of time
   atan2,        ///< the angle of the point (b, a)
   choose        ///< b where a >= 0, else c
 };
 
 /// One operation; its operands are indices of earlier operations in the list.
 struct Operation {
-  Op op;                                         ///< Kind of the operation.
-  int a = -1, b = -1, c = -1;                    ///< Indices of the operands; -1: none.
-  int exponent = 0;                              ///< Exponent of total_power.
-  double number = 0;                             ///< Number of constant and scale.
-  const ElementaryFunction* function = nullptr;  ///< Function of call.
+  Op op;                       ///< Kind of the operation.
+  int a = -1, b = -1, c = -1;  ///< Indices of the operands; -1: none.
+  int exponent = 0;            ///< Exponent of total_power, order of the derivative of external.
+  double number = 0;           ///< Number of constant and scale.
+  const ElementaryFunction* function = nullptr;        ///< Function of call.
+  const NamedFunctions::Function* external = nullptr;  ///< Function of external.
 
   /// Compares all members, for the search of equal operations.
   auto operator<=>(const Operation&) const = default;
@@ -44,6 +46,9 @@ struct Operation {
 struct Formula::Program {
   std::vector<Operation> operations;  ///< All operations.
   std::array<int, 3> results{};       ///< Indices of value, rate and acceleration.
+
+  /// Functions of the operations `external`, which must exist as long as the program.
+  std::vector<std::shared_ptr<const NamedFunctions::Function>> externals;
 
   /// Evaluates all operations at the time t [s].
   /// @param x  results of the operations (n_operations)
@@ -104,11 +109,16 @@ struct Graph {
   /// All operations; a deque, because references to them must stay valid.
   std::deque<Operation> operations;
   std::map<Operation, int> locations;  ///< Index of each operation.
+  std::map<std::string, int> named;    ///< Index of the value of each named formula.
+  /// Functions of the operations `external`.
+  std::vector<std::shared_ptr<const NamedFunctions::Function>> externals;
 
   /// Returns the node of a constant.
   Node number(double value);
   /// Returns the node of the time t.
   Node time() { return push({.op = Op::time}); }
+  /// Returns the node of a function of time.
+  Node external(const std::shared_ptr<const NamedFunctions::Function>& function);
   /// Returns the node of an operation; it is a constant if all operands are constants.
   Node push(const Operation& operation);
 };

@@ -71,12 +71,14 @@ std::string word_for_term(const std::string& word, std::span<const std::string> 
 }
 
 std::string answer_to_key(const std::string& key) {
-  if (ends_with_degrees(key)) return "angles are given in radians";
+  if (ends_with_degrees(key))
+    return "angles are in radians, or in degrees as a text such as \"30 deg\"";
   if (key == "friction" || key == "friction_coefficient") return "there is no friction";
   if (key == "contact") return "there is no contact between bodies; [[spring]] has end stops";
   if (key == "material" || key == "materials")
     return "each body has its own youngs_modulus, poisson_ratio and density";
-  if (key == "unit" || key == "units") return "numbers are in SI units";
+  if (key == "unit" || key == "units")
+    return "numbers are in SI units; a number in another unit is a text such as \"12 mm\"";
   if (key == "frequency" || key == "eigenfrequency" || key == "natural_frequency")
     return "natural frequencies are neither prescribed nor optimized";
   if (key == "stress" || key == "stress_limit" || key == "max_stress")

@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "geometry/components/outline.h"
+#include "geometry/parts/segment.h"
+#include "geometry/text.h"
 #include "io/files.h"
 
 namespace flexmorph::io {
@@ -23,6 +26,24 @@ Curve arc(const Vec2& center, const Vec2& major, const Vec2& minor, double from,
           false};
 }
 
+void Ignored::add(const std::string& one, const std::string& many, const std::string& location) {
+  auto kind =
+      std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& k) { return k.one == one; });
+  if (kind == kinds_.end()) kind = kinds_.insert(kind, {one, many, location, 0});
+  ++kind->count;
+}
+
+std::vector<std::string> Ignored::notes() const {
+  std::vector<std::string> out;
+  for (const Kind& kind : kinds_) {
+    const bool one = kind.count == 1;
+    const std::string at = kind.location.empty() ? "" : one ? ", at " : ", the first one at ";
+    out.push_back(to_text(kind.count) + " " + (one ? kind.one + " is" : kind.many + " are") +
+                  " ignored" + at + kind.location);
+  }
+  return out;
+}
+
 }  // namespace drawing
 
 namespace {
@@ -33,7 +54,7 @@ using drawing::Path;
 using Ring = std::vector<Vec2>;
 
 std::string words(const Vec2& p) {
-  return "(" + to_text(p.x(), 6) + ", " + to_text(p.y(), 6) + ")";
+  return formatted("(%s, %s)", to_text(p.x(), 6).c_str(), to_text(p.y(), 6).c_str());
 }
 
 /// Returns the larger side of the bounding box of points on all curves.
@@ -81,6 +102,55 @@ Path reversed(Path path) {
   return path;
 }
 
+/// Removes paths all of whose points are within a distance.
+void drop_points(Drawing& d, double distance) {
+  constexpr int kSamples = 8;
+  std::erase_if(d.paths, [&](const Path& path) {
+    const Vec2 begin = path.begin();
+    for (const Curve& curve : path.curves)
+      for (int k = 0; k <= kSamples; ++k)
+        if (!((curve.at(k / double(kSamples)) - begin).cwiseAbs().maxCoeff() <= distance))
+          return false;
+    if (path.curves.size() == 1 && path.curves[0].straight)
+      d.ignored.add("line of no length", "lines of no length", words(begin));
+    else
+      d.ignored.add("curve of no size", "curves of no size", words(begin));
+    return true;
+  });
+}
+
+void ignore_twin(Drawing& d, const Vec2& begin) {
+  d.ignored.add("curve that is drawn twice", "curves that are drawn twice", words(begin));
+}
+
+/// Removes open paths that are drawn twice, in the same or in the opposite direction.
+void drop_equal_paths(Drawing& d, std::vector<Path>& open, double near) {
+  constexpr int kSamples = 4;  // points of each curve, beside its begin
+  std::vector<Ring> points;
+  for (const Path& path : open) {
+    Ring& all = points.emplace_back(Ring{path.begin()});
+    for (const Curve& curve : path.curves)
+      for (int k = 1; k <= kSamples; ++k) all.push_back(curve.at(k / double(kSamples)));
+  }
+  const auto meet = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= near; };
+  const auto equal = [&](const Ring& a, const Ring& b) {
+    return a.size() == b.size() && (std::equal(a.begin(), a.end(), b.begin(), meet) ||
+                                    std::equal(a.begin(), a.end(), b.rbegin(), meet));
+  };
+  std::vector<Path> kept;
+  std::vector<const Ring*> seen;
+  for (size_t i = 0; i < open.size(); ++i) {
+    if (std::any_of(seen.begin(), seen.end(),
+                    [&](const Ring* r) { return equal(*r, points[i]); })) {
+      ignore_twin(d, open[i].begin());
+      continue;
+    }
+    seen.push_back(&points[i]);
+    kept.push_back(std::move(open[i]));
+  }
+  open = std::move(kept);
+}
+
 /// Joins open paths end to end to closed paths.
 void close_chains(Drawing& d, double near) {
   std::vector<Path> open;
@@ -94,6 +164,7 @@ void close_chains(Drawing& d, double near) {
   if (open.size() > kMaxOpenCurves)
     throw Error::input("there are more than " + to_text(static_cast<long long>(kMaxOpenCurves)) +
                        " lines and arcs to be joined; draw the outlines as polylines");
+  drop_equal_paths(d, open, near);
   while (!open.empty()) {
     Path chain = std::move(open.back());
     open.pop_back();
@@ -130,20 +201,70 @@ Ring ring_of(const Path& path, double tolerance) {
   return ring;
 }
 
+/// Returns true if every point of a ring is within a distance of the other ring.
+bool lies_on(const Ring& ring, const Ring& other, double near) {
+  return std::all_of(ring.begin(), ring.end(), [&](const Vec2& p) {
+    for (size_t k = 0; k < other.size(); ++k)
+      if (distance(Segment{other[k], other[(k + 1) % other.size()]}, p) <= near) return true;
+    return false;
+  });
+}
+
+/// Removes rings that are drawn twice.
+void drop_equal_rings(Drawing& d, std::vector<Ring>& rings, double tolerance) {
+  const double near = 2 * tolerance;  // both rings are within the tolerance of their curves
+  std::vector<Box> boxes;
+  std::vector<size_t> order;
+  for (const Ring& ring : rings) {
+    order.push_back(order.size());
+    boxes.push_back(bounds_of(ring));
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t i, size_t j) { return boxes[i].lower.x() < boxes[j].lower.x(); });
+  const auto meet = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= near; };
+  const auto equal = [&](size_t i, size_t j) {
+    const Ring &a = rings[i], &b = rings[j];
+    if (!meet(boxes[i].lower, boxes[j].lower) || !meet(boxes[i].upper, boxes[j].upper))
+      return false;
+    if (a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), meet)) return true;
+    return lies_on(a, b, near) && lies_on(b, a, near);
+  };
+  std::vector<bool> twice(rings.size(), false);
+  for (size_t m = 0; m < order.size(); ++m)
+    for (size_t n = m + 1; n < order.size(); ++n) {
+      const size_t i = order[m], j = order[n];
+      if (boxes[j].lower.x() - boxes[i].lower.x() > near) break;
+      if (!twice[i] && !twice[j] && equal(i, j)) twice[std::max(i, j)] = true;
+    }
+  for (size_t i = rings.size(); i-- > 0;) {
+    if (!twice[i]) continue;
+    ignore_twin(d, rings[i].front());
+    rings.erase(rings.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 }  // namespace
 
-std::vector<std::vector<Vec2>> drawing::closed_rings(Drawing d, double unit) {
-  if (d.paths.empty()) throw Error::input("it contains no closed curve");
-  const double tolerance = kDrawingTolerance * size_of(d);
+DrawnOutlines drawing::closed_rings(Drawing d, double unit) {
+  drop_points(d, 0);
+  const double tolerance = d.paths.empty() ? 0 : kDrawingTolerance * size_of(d);
+  drop_points(d, tolerance);
+  if (d.paths.empty()) {
+    std::string why = "it contains no closed curve";
+    for (const std::string& note : d.ignored.notes()) why += "; " + note;
+    throw Error::input(why);
+  }
   close_chains(d, tolerance);
   std::vector<Ring> rings;
   for (const Path& p : d.paths) {
     rings.push_back(ring_of(p, tolerance));
     if (rings.back().size() < 3)
       throw Error::input("the curve that begins at " + words(p.begin()) + " has no area");
-    for (Vec2& v : rings.back()) v *= unit;
   }
-  return rings;
+  drop_equal_rings(d, rings, tolerance);
+  for (Ring& ring : rings)
+    for (Vec2& v : ring) v *= unit;
+  return {std::move(rings), d.ignored.notes()};
 }
 
 std::vector<std::string> layers_of_dxf(const std::string& path) {
@@ -155,8 +276,7 @@ std::vector<std::string> layers_of_dxf(const std::string& path) {
   }
 }
 
-std::vector<std::vector<Vec2>> read_drawing(const std::string& path,
-                                            const DrawingSettings& settings) {
+DrawnOutlines read_drawing(const std::string& path, const DrawingSettings& settings) {
   std::string type = std::filesystem::path(path).extension().string();
   std::transform(type.begin(), type.end(), type.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -170,7 +290,9 @@ std::vector<std::vector<Vec2>> read_drawing(const std::string& path,
     Drawing d = type == ".dxf" ? drawing::read_dxf(text, settings.layers) : drawing::read_svg(text);
     const std::optional<double> unit = settings.unit ? settings.unit : d.unit;
     if (!unit) throw Error::input("it contains no unit of length: " + settings.needs_unit);
-    return drawing::closed_rings(std::move(d), *unit);
+    DrawnOutlines out = drawing::closed_rings(std::move(d), *unit);
+    for (std::string& note : out.notes) note = path + ": " + note;
+    return out;
   } catch (const Error& error) {
     throw Error::input(path + ": " + error.what());
   }

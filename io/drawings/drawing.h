@@ -24,12 +24,21 @@ struct DrawingSettings {
 /// drawing of their curves, and ends of curves that are closer to each other meet.
 constexpr double kDrawingTolerance = 1e-5;
 
-/// Returns the closed curves of a drawing as polygons whose vertices lie on the curves [m]. The
-/// file name extension decides between DXF and SVG.
+/// The closed curves of a drawing.
+struct DrawnOutlines {
+  std::vector<std::vector<Vec2>> rings;  ///< Polygons whose vertices lie on the curves [m].
+
+  /// Sentences about the contents of the drawing that were ignored.
+  std::vector<std::string> notes;
+};
+
+/// Returns the closed curves of a drawing. The file name extension decides between DXF and SVG.
+/// Lines of no length and curves that are drawn twice are ignored.
 ///
 /// DXF: read are LWPOLYLINE and POLYLINE with their arcs, CIRCLE, ELLIPSE, SPLINE with control
 /// points, and chains of LINE, ARC, open splines and open polylines. Texts, dimensions, hatches and
-/// points are ignored. The unit is that of $INSUNITS.
+/// points are ignored, and layers for which is_annotation_layer() is true unless `settings` names
+/// them. The unit is that of $INSUNITS.
 ///
 /// SVG: read are path, polygon, polyline, line, rect, circle and ellipse with the transformations
 /// of the elements that contain them. The unit is that of the attribute width; a width in px gives
@@ -38,13 +47,16 @@ constexpr double kDrawingTolerance = 1e-5;
 /// @throws Error (input) "<path>: ..." for a file that cannot be read, that gives no unit while
 ///         `settings` has none, that is empty, or that has open curves or elements that are not
 ///         supported.
-std::vector<std::vector<Vec2>> read_drawing(const std::string& path,
-                                            const DrawingSettings& settings);
+DrawnOutlines read_drawing(const std::string& path, const DrawingSettings& settings);
 
 /// Returns the names of the layers of a DXF file on which something is drawn, in alphabetical
 /// order.
 /// @throws Error (input) "<path>: ..." for a file that cannot be read.
 std::vector<std::string> layers_of_dxf(const std::string& path);
+
+/// Returns true if the name of a layer says that the layer has dimensions or texts, such as
+/// "DIM", "Text 1" or "defpoints".
+bool is_annotation_layer(const std::string& layer);
 
 /// Types and functions that the readers of all formats share.
 namespace drawing {
@@ -66,10 +78,29 @@ struct Path {
   Vec2 end() const { return curves.back().at(1); }
 };
 
+/// Counts the contents of a drawing that are ignored.
+class Ignored {
+ public:
+  /// Counts one object that is ignored.
+  /// @param one, many  what the object is, for a note about one and about several objects
+  /// @param location   text about the location of the object; empty: unknown
+  void add(const std::string& one, const std::string& many, const std::string& location = "");
+  /// Returns a sentence about each kind of object.
+  std::vector<std::string> notes() const;
+
+ private:
+  struct Kind {
+    std::string one, many, location;
+    int count = 0;
+  };
+  std::vector<Kind> kinds_;
+};
+
 /// The contents of a drawing.
 struct Drawing {
   std::vector<Path> paths;          ///< Closed and open paths.
   std::optional<double> unit = {};  ///< Length of one unit [m], if the file gives it.
+  Ignored ignored = {};             ///< Contents that are not in `paths`.
 };
 
 /// Returns the straight line between two points.
@@ -89,10 +120,10 @@ struct Spline {
 ///         ascending, or when weights are not positive.
 std::vector<Curve> spline(Spline s);
 
-/// Returns the closed curves of a drawing as polygons [m]; open curves are joined end to end.
+/// Returns the closed curves of a drawing; open curves are joined end to end.
 /// @param unit  length of one unit of the drawing [m]
 /// @throws Error (input) as read_drawing(), without the path.
-std::vector<std::vector<Vec2>> closed_rings(Drawing drawing, double unit);
+DrawnOutlines closed_rings(Drawing drawing, double unit);
 
 /// Largest number of curves that a drawing may have.
 constexpr std::size_t kMaxCurves = 100'000;

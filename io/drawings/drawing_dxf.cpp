@@ -2,7 +2,9 @@
 #include <dl_dxf.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 #include <sstream>
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
+constexpr const char* kDimension = "DIMENSION";
 
 /// Returns a side of a polyline: a line, or an arc of the angle 4 atan(bulge), which lies to the
 /// left of the side if the bulge is negative.
@@ -34,12 +37,31 @@ Curve side(const Vec2& a, const Vec2& b, double bulge) {
   return curve;
 }
 
+/// Returns the words of a name in small letters. Other bytes than those of ASCII count as letters.
+std::vector<std::string> split_name(const std::string& name) {
+  std::vector<std::string> out(1);
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte > 127 || std::isalpha(byte))
+      out.back() += static_cast<char>(byte > 127 ? byte : std::tolower(byte));
+    else if (!out.back().empty())
+      out.emplace_back();
+  }
+  return out;
+}
+
 class Reader : public DL_CreationAdapter {
  public:
   explicit Reader(const std::vector<std::string>& layers) : layers_(layers) {}
 
   Drawing take() {
     finish();
+    for (const auto& [layer, count] : unread_)
+      for (int k = 0; k < count; ++k) {
+        const std::string on =
+            " on the layer '" + layer + "' of dimensions or texts (`layers` does not name it)";
+        drawing_.ignored.add("curve" + on, "curves" + on);
+      }
     for (const std::string& layer : layers_)
       if (!known_.contains(layer))
         throw Error::input("the layer '" + layer + "' contains no curves");
@@ -107,12 +129,59 @@ class Reader : public DL_CreationAdapter {
   void endEntity() override { finish(); }
   void endSequence() override { finish(); }
 
+  void addText(const DL_TextData&) override { ignore("TEXT"); }
+  void addMText(const DL_MTextData&) override { ignore("MTEXT"); }
+  void addArcAlignedText(const DL_ArcAlignedTextData&) override { ignore("ARCALIGNEDTEXT"); }
+  void addAttribute(const DL_AttributeData&) override { ignore("ATTRIB"); }
+  void addLeader(const DL_LeaderData&) override { ignore("LEADER"); }
+  void addHatch(const DL_HatchData&) override { ignore("HATCH"); }
+  void addPoint(const DL_PointData&) override { ignore("POINT"); }
+  void addSolid(const DL_SolidData&) override { ignore("SOLID"); }
+  void addTrace(const DL_TraceData&) override { ignore("TRACE"); }
+  void addImage(const DL_ImageData&) override { ignore("IMAGE"); }
+  void addXLine(const DL_XLineData&) override { ignore("XLINE"); }
+  void addRay(const DL_RayData&) override { ignore("RAY"); }
+  void addDimAlign(const DL_DimensionData&, const DL_DimAlignedData&) override {
+    ignore(kDimension);
+  }
+  void addDimLinear(const DL_DimensionData&, const DL_DimLinearData&) override {
+    ignore(kDimension);
+  }
+  void addDimRadial(const DL_DimensionData&, const DL_DimRadialData&) override {
+    ignore(kDimension);
+  }
+  void addDimDiametric(const DL_DimensionData&, const DL_DimDiametricData&) override {
+    ignore(kDimension);
+  }
+  void addDimAngular(const DL_DimensionData&, const DL_DimAngular2LData&) override {
+    ignore(kDimension);
+  }
+  void addDimAngular3P(const DL_DimensionData&, const DL_DimAngular3PData&) override {
+    ignore(kDimension);
+  }
+  void addDimOrdinate(const DL_DimensionData&, const DL_DimOrdinateData&) override {
+    ignore(kDimension);
+  }
+
  private:
   bool wanted() {
     if (in_block_) return false;
     const std::string layer = getAttributes().getLayer();
     known_.insert(layer);
+    if (layers_.empty() && is_annotation_layer(layer)) {
+      ++unread_[layer];
+      return false;
+    }
+    return is_read(layer);
+  }
+  bool is_read(const std::string& layer) const {
     return layers_.empty() || std::find(layers_.begin(), layers_.end(), layer) != layers_.end();
+  }
+  /// Counts an entity that is no curve.
+  void ignore(const std::string& name) {
+    finish();
+    const std::string layer = getAttributes().getLayer();
+    if (!in_block_ && is_read(layer)) drawing_.ignored.add(name + " entity", name + " entities");
   }
   void refuse(const std::string& what) {
     if (wanted()) throw Error::input(what);
@@ -149,6 +218,7 @@ class Reader : public DL_CreationAdapter {
   const std::vector<std::string>& layers_;
   Drawing drawing_;
   std::set<std::string> known_;
+  std::map<std::string, int> unread_;  // curves on layers of dimensions and texts
   bool in_block_ = false, polyline_ = false, in_spline_ = false, closed_ = false;
   Spline spline_;
   std::vector<DL_VertexData> vertices_;
@@ -179,3 +249,17 @@ std::vector<std::string> dxf_layers(const std::string& text) {
 }
 
 }  // namespace flexmorph::io::drawing
+
+namespace flexmorph::io {
+
+bool is_annotation_layer(const std::string& layer) {
+  static const std::set<std::string> kWords = {
+      "dim",    "dims",      "dimension",  "dimensions",      "dimensioning", "text",  "texts",
+      "mtext",  "anno",      "annotation", "annotations",     "note",         "notes", "label",
+      "labels", "defpoints", "bemassung",  "bema\xc3\x9fung", "beschriftung", "cotes", "cotas"};
+  const std::vector<std::string> words = drawing::split_name(layer);
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return kWords.contains(word); });
+}
+
+}  // namespace flexmorph::io

@@ -161,7 +161,7 @@ TopoDS_Shape shape_of(const std::string& path) {
 std::vector<std::vector<Vec2>> read_step_outline(const std::string& path, double thickness) {
   read_regular_file(path, "a STEP file");  // throws with the reason if the file cannot be read
   try {
-    return drawing::closed_rings(drawing_of(outline_face(shape_of(path), thickness)), kUnit);
+    return drawing::closed_rings(drawing_of(outline_face(shape_of(path), thickness)), kUnit).rings;
   } catch (const Standard_Failure& failure) {
     throw Error::input(path + ": OpenCASCADE cannot read it: " + failure.GetMessageString());
   } catch (const Error& error) {

@@ -154,13 +154,9 @@ TEST(WhatHasNoMeaning, IsRefusedWithItsLocation) {
   const std::string header = "X0,Y0,half_length,angle,c1,c2,c3\n";
   const std::string empty = scratch.write("empty.csv", header),
                     bad = scratch.write("nan.csv", header + "0.1,0,0.05,0,nan,0.01,0.01\n");
-  const std::string pendulum = contents_of(find_case("plate_pendulum"));
-  const std::string twice = scratch.write(
-      "twice.toml", pendulum.substr(0, pendulum.find("[expect]")) +
-                        "[[joint]]\ntype = \"pin\"\nbody = \"plate\"\npoint = [0.0, 0.0]\n");
   for (const Words& words : {Words{"short_beam", "--set", "design.start='" + empty + "'"},
                              Words{"short_beam", "--set", "design.start='" + bad + "'"},
-                             Words{"short_beam", "--set", "support.0.fix=[]"}, Words{twice},
+                             Words{"short_beam", "--set", "support.0.fix=[]"},
                              Words{"plate_pendulum", "--set", "joint.0.components=[]"},
                              Words{"rotating_plate_v05", "--set", "joint.0.edges=[]"},
                              Words{"free_beam_heated", "--set", "body.heat.rise=-1e9"}}) {
@@ -170,6 +166,27 @@ TEST(WhatHasNoMeaning, IsRefusedWithItsLocation) {
     EXPECT_EQ(ended.code, 2) << words.back() << ": " << ended.out << ended.err;
     EXPECT_FALSE(ended.err.empty());
   }
+}
+
+// A second pin at the point of the first one holds nothing more. The motion is that of one pin; the
+// forces of the two pins are not unique, and both are named.
+TEST(TwoPinsAtOnePoint, MoveAsOne) {
+  const Scratch scratch;
+  const std::string pendulum = contents_of(find_case("plate_pendulum"));
+  const std::string begin = pendulum.substr(0, pendulum.find("[expect]"));
+  const std::string twice = scratch.write(
+      "twice.toml", begin + "[[joint]]\ntype = \"pin\"\nbody = \"plate\"\npoint = [0.0, 0.0]\n");
+  const Words changes = {"time.end=0.02", "body.elements=[2, 2]", "output.plots=false",
+                         "output.vtk=false"};
+  const std::string one = scratch / "one", both = scratch / "both";
+  ASSERT_EQ(test::run(scratch, "plate_pendulum", one, changes).code, 0);
+  const Ended ended = test::run(scratch, twice, both, changes);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(contains(contents_of(both + "/run.json"), "\"not_unique_forces\": \"plate.pin\""));
+  const std::vector<double> expected = io::read_csv(one + "/motion.csv").numbers("plate.corner_z"),
+                            found = io::read_csv(both + "/motion.csv").numbers("plate.corner_z");
+  ASSERT_EQ(found.size(), expected.size());
+  for (size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-9);
 }
 
 }  // namespace

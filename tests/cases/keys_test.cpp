@@ -121,6 +121,24 @@ TEST(KeysCommand, ShowsATableOrAllOfThem) {
   EXPECT_EQ(flexmorph(scratch, {"keys", "--markdown"}).out, cases::keys_as_markdown());
 }
 
+TEST(KeysCommand, FindsKeysByAWord) {
+  const Scratch scratch;
+  const Ended found = flexmorph(scratch, {"keys", "Poisson"});
+  EXPECT_EQ(found.code, 0);
+  EXPECT_TRUE(testing::mentions_all(found.out, {"[[body]]", "  poisson_ratio ", "[domain]"}));
+  EXPECT_FALSE(contains(found.out, "  thickness "));
+  const Ended materials = flexmorph(scratch, {"keys", "material"});
+  EXPECT_TRUE(testing::mentions_all(materials.out,
+                                    {"material = \"steel\": density 7850 kg/m^3", "EN 1993-1-1",
+                                     "material = \"aluminium\"", "EN 1999-1-1"}));
+  // 100 columns, and names of tables that are longer than their column.
+  for (const std::string& line : lines_of(materials.out)) EXPECT_LE(line.size(), 110u) << line;
+  // The whole reference says what a number may be.
+  EXPECT_TRUE(testing::mentions_all(lines_of(flexmorph(scratch, {"keys"}).out)[0] + " " +
+                                        lines_of(flexmorph(scratch, {"keys"}).out)[1],
+                                    {"[constants]", "\"12 mm\""}));
+}
+
 TEST(KeysCommand, NamesTheTableThatWasMeant) {
   const Scratch scratch;
   const Ended ended = flexmorph(scratch, {"keys", "optimiser"});

@@ -59,11 +59,11 @@ TEST_F(Schema, RefusesBrokenCases) {
     const char *from, *to;
   };
   for (const Break& each :
-       {Break{"step = 1e-3", "step = -1e-3"},          // below its range
-        Break{"step = 1e-3", "step = \"adaptativ\""},  // an unknown value
-        Break{"step = 1e-3", "stepp = 1e-3"},          // an unknown key
-        Break{"end = 0.12", ""},                       // a missing key that is required
-        Break{"end = 0.12", "end = \"0.12\""},         // a text instead of a number
+       {Break{"step = 1e-3", "step = -1e-3"},   // below its range
+        Break{"step = 1e-3", "step = [1e-3]"},  // a list instead of a number
+        Break{"step = 1e-3", "stepp = 1e-3"},   // an unknown key
+        Break{"end = 0.12", ""},                // a missing key that is required
+        Break{"end = 0.12", "end = true"},      // true instead of a number
         Break{"element = \"ale_ancf_plate\"", "element = \"plate\""},
         Break{"poisson_ratio = 0.3", "poisson_ratio = 0.7"},
         Break{"elements = [10, 2]", "elements = [10, 2, 2]"},

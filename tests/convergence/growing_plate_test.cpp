@@ -220,8 +220,8 @@ double momentum_error(double h) {
                  point_motion(body, step.x, {plate.line_m(0).value, n}).velocity;
       }
     // This momentum includes the mass at the tip.
-    const Vec2 now =
-        momentum(step.model, step.x) + p.tip_mass * point_motion(body, step.x, p.tip()).velocity;
+    const Vec2 now = Vec2(step.model.momentum(step.x).head<2>()) +
+                     p.tip_mass * point_motion(body, step.x, p.tip()).velocity;
     if (step.x.t == 0) {
       start = now;
     } else {

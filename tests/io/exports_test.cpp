@@ -215,7 +215,8 @@ TEST(Dxf, IsADomainAgain) {
       {"LOADS", {{{0.6, 0.05}}, {{0, 0}, {0, 0.1}}}, {{full_circle({0.3, 0.05}, 0.01)}}}};
   for (const LengthUnit& unit : kLengthUnits) {
     write_dxf(scratch / "design.dxf", {&largest, 1}, unit, more);
-    const Region back = region_of(read_drawing(scratch / "design.dxf", {{}, {"OUTLINE", "HOLES"}}));
+    const Region back =
+        region_of(read_drawing(scratch / "design.dxf", {{}, {"OUTLINE", "HOLES"}}).rings);
     EXPECT_EQ(back.holes.size(), largest.holes.size());
     // The distance of the reader's sides from arcs is a fraction of the size of the drawing.
     const double near = kDrawingTolerance * 0.6;

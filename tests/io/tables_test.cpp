@@ -90,7 +90,7 @@ TEST(CsvWriter, ReplacesAnOldTableAsAWhole) {
 TEST(Csv, ReadsSemicolonsDecimalCommasAndByteOrderMarks) {
   const Scratch scratch;
   for (const char* text :
-       {"\xEF\xBB\xBFtime;angle\r\n0;1,5\r\n0,25;-2e-3\r\n", "time\tangle\n0\t1,5\n0.25\t-2e-3\n",
+       {"\xEF\xBB\xBFtime;angle\r\n0;1,5\r\n0,25;-2e-3\r\n", "time\tangle\n0\t1,5\n0,25\t-2e-3\n",
         "time, angle\n0 , 1.5\n0.25, -2e-3"}) {
     const CsvTable table = read_csv(scratch.write("t.csv", text));
     EXPECT_EQ(table.columns, (std::vector<std::string>{"time", "angle"})) << text;
@@ -103,6 +103,59 @@ TEST(Csv, ReadsSemicolonsDecimalCommasAndByteOrderMarks) {
   } catch (const Error& error) {
     EXPECT_TRUE(says(error.what(), "", {"'time'", "'Time'", "'Angle'"}));
   }
+}
+
+/// Returns the message with which a table is refused when the numbers of its column x are read.
+std::string complaint_about(const Scratch& scratch, const std::string& text) {
+  try {
+    read_csv(scratch.write("t.csv", text)).all_numbers("x");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    return error.what();
+  }
+  return "";
+}
+
+// A point between thousands in a table with decimal commas would be read as a number that is a
+// thousand times too small.
+TEST(Csv, RefusesMixedMarks) {
+  const Scratch scratch;
+  struct Mixed {
+    const char* text;
+    int line;
+    std::vector<std::string> parts;
+  };
+  const Mixed all[] = {
+      {"time;x\n0,0000;0\n0,0200;998\n0,0400;1.005\n", 4, {"'1.005'", "'0,0000'", "line 2"}},
+      {"time;x\n0;1.5\n1;2\n2;3,5\n", 4, {"'3,5'", "'1.5'", "line 2"}},
+      {"time;x\n0;1,5\n1;1.005,25\n", 3, {"'1.005,25'", "thousands"}},
+      {"time;x\n0;1\n1;1.005.250\n", 3, {"'1.005.250'", "number"}},
+      {"time,x\n0,1\n1,\"1,005\"\n", 3, {"'1,005'", "comma", "semicolons"}},
+      {"time,x\n0,0,1\n0,02,1,5\n", 2, {"3 values", "2"}},
+      {"time,x\n0,00,1,00\n0,02,1,50\n", 2, {"4 values", "2", "comma", "semicolons"}},
+      {"time;x\n0;1\n1;\n", 3, {"'x'", "empty"}},
+      {"time;x\n0;1\n1;one\n", 3, {"'one'", "number"}}};
+  for (const Mixed& each : all)
+    EXPECT_TRUE(says(complaint_about(scratch, each.text),
+                     scratch / ("t.csv:" + std::to_string(each.line) + ": "), each.parts))
+        << each.text;
+  // Texts are no numbers, and a table of whole numbers and points alone is not mixed.
+  for (const char* good : {"part;x\nv1.2;1,5\na, b.;2\n", "time;x\n0.5;1\n0.75;1000\n"})
+    EXPECT_EQ(complaint_about(scratch, good), "") << good;
+}
+
+// Spreadsheets write rows without contents below the last one.
+TEST(Csv, IgnoresBlankRowsAtTheEnd) {
+  const Scratch scratch;
+  for (const char* end : {"  ", "\n\n", ";", ";\n;\n", " ; \r\n;\r\n\r\n", "\"\";\"\"\n", "\t\n"}) {
+    const CsvTable table = read_csv(scratch.write("t.csv", std::string("t;x\n1;2\n3;4\n") + end));
+    EXPECT_EQ(table.n_rows(), 2u) << end;
+    EXPECT_EQ(table.numbers("x"), (std::vector<double>{2, 4})) << end;
+  }
+  EXPECT_EQ(read_csv(scratch.write("t.csv", "t;x\n;\n")).n_rows(), 0u);
+  // A row with one value is not blank.
+  EXPECT_EQ(read_csv(scratch.write("t.csv", "t;x\n1;2\n;5\n")).n_rows(), 2u);
+  EXPECT_EQ(read_csv(scratch.write("t.csv", "t;x\n1;2\n3;\n")).n_rows(), 2u);
 }
 
 /// Returns the cells of one line, read one character after the other.

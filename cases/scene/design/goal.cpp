@@ -101,11 +101,12 @@ const Key& kAtMost =
             "Upper limit of the response, in its unit; at most the value of the full plate.");
 const Key& kAtLeast =
     io::key("design.constraint", "at_least")
-        .number(io::positive("a response"))
+        .number(io::not_negative("a response"))
         .otherwise_as("no lower limit")
         .when("the response does not depend on loads")
         .description(
-            "Lower limit of the response, in its unit; at most the value of the full plate.");
+            "Lower limit of the response, in its unit; at most the value of the full plate. 0: no "
+            "limit.");
 
 const ResponseRow& read_row(const Table& t, const Key& key, const std::string& loads,
                             const mmc::Plate& plate) {
@@ -127,7 +128,10 @@ void read_limit(const Table& t, const Key& key, const ResponseRow& row, const mm
                 mmc::Goal& goal) {
   Key of_row = key.measured_in(std::string(row.unit));
   if (row.full) of_row = of_row.within(0, without_round_off(row.full(plate)));
-  goal.limits.emplace_back(row, t.number(of_row), key.name == kAtLeast.name, plate);
+  const bool at_least = key.name == kAtLeast.name;
+  const double value = t.number(of_row);
+  if (at_least && value == 0) return;
+  goal.limits.emplace_back(row, value, at_least, plate);
   goal.limits.back().key_path = t.path() + "." + key.name;
 }
 
@@ -167,7 +171,7 @@ void read_constraint(const Table& t, const std::string& design_loads, const mmc:
     t.fail(kAtLeast, "only " + names_of_rows(false) + " has a lower limit");
   for (const Key* key : {&kAtMost, &kAtLeast})
     if (t.has(*key)) read_limit(t, key->called(noun_of(row)), row, plate, goal);
-  if (t.has(kAtMost) && t.has(kAtLeast) &&
+  if (t.has(kAtMost) && t.has(kAtLeast) && goal.limits.back().at_least &&
       goal.limits.back().value > goal.limits[goal.limits.size() - 2].value)
     t.fail(kAtLeast, "a lower limit is at most `at_most`");
 }

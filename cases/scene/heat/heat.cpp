@@ -2,6 +2,7 @@
 
 #include "cases/scene/elements/row.h"
 #include "cases/scene/heat/keys.h"
+#include "cases/scene/materials/material.h"
 #include "cases/scene/read.h"
 
 namespace flexmorph::cases {
@@ -43,7 +44,7 @@ void read_force(const Table& t, const Scene& scene, const Body& body, BodyHeat& 
 
 BodyHeat read_heat(const Table& t, const Scene& scene, const Body& body) {
   BodyHeat heat;
-  heat.expansion = t.number(kExpansion);
+  heat.expansion = t.number(kExpansion, body.material ? body.material->expansion : std::nullopt);
   heat.rise = read_law(t, kRise, scene);
   if (scene.follows_trajectory(heat.rise))
     t.fail(kRise, "the drive of a temperature cannot have from = \"trajectory\"");

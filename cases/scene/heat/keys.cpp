@@ -9,6 +9,7 @@ namespace heat_keys {
 
 const io::Key& kExpansion = io::key("body.heat", "expansion")
                                 .number(io::any_number("a coefficient of expansion", "1/K"))
+                                .otherwise_as("that of `material`; required without it")
                                 .description("Coefficient of thermal expansion.");
 const io::Key& kRise = io::key("body.heat", "rise")
                            .number(io::any_number("a temperature rise", "K"))

@@ -75,7 +75,7 @@ void AccelerationSolver::number(const State& x, const Constraints& c) {
 /// @throws Error (input) naming the bodies if a motion without mass exists.
 void AccelerationSolver::require_mass() const {
   const int n = model_.n_dofs();
-  if (n == model_.n_constraints()) return;
+  if (n == model_.n_kept_constraints()) return;
   SparseMatrix shifted = kkt_;
   for (int i = 0; i < n; ++i) shifted.coeffRef(i, i) += 0.01 * kNoMass;
   shifted.makeCompressed();

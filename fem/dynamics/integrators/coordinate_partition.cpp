@@ -11,8 +11,10 @@ namespace {
 
 constexpr double kDependent = 1e-9;  // independent part of a row of unit size, as in diagnose()
 
-/// Returns J without its zero columns, and in `unknowns` the indices of the other columns.
-MatrixXd used_columns(const SparseMatrix& j, std::vector<int>& unknowns) {
+/// Returns the rows of J in `rows` without zero columns, and in `unknowns` the indices of the other
+/// columns.
+MatrixXd used_columns(const SparseMatrix& j, const std::vector<int>& rows,
+                      std::vector<int>& unknowns) {
   unknowns.clear();
   for (int column = 0; column < j.cols(); ++column)
     for (SparseMatrix::InnerIterator it(j, column); it; ++it)
@@ -20,9 +22,12 @@ MatrixXd used_columns(const SparseMatrix& j, std::vector<int>& unknowns) {
         unknowns.push_back(column);
         break;
       }
-  MatrixXd out(j.rows(), static_cast<Eigen::Index>(unknowns.size()));
-  for (size_t k = 0; k < unknowns.size(); ++k)
-    out.col(static_cast<Eigen::Index>(k)) = VectorXd(j.col(unknowns[k]));
+  MatrixXd out(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(unknowns.size()));
+  for (size_t k = 0; k < unknowns.size(); ++k) {
+    const VectorXd column = j.col(unknowns[k]);
+    for (size_t i = 0; i < rows.size(); ++i)
+      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = column[rows[i]];
+  }
   return out;
 }
 
@@ -38,9 +43,13 @@ MatrixXd used_columns(const SparseMatrix& j, std::vector<int>& unknowns) {
 
 bool CoordinatePartition::choose(Workspace& model, const State& x) {
   rows_.evaluate(model, x);
-  const Eigen::Index m = model.n_constraints();
+  kept_rows_.clear();
+  for (int row = 0; row < model.n_constraints(); ++row)
+    if (!std::binary_search(model.left_out_rows().begin(), model.left_out_rows().end(), row))
+      kept_rows_.push_back(row);
+  const auto m = static_cast<Eigen::Index>(kept_rows_.size());
   std::vector<int> used, chosen;
-  const MatrixXd j = used_columns(rows_.jacobian(), used);
+  const MatrixXd j = used_columns(rows_.jacobian(), kept_rows_, used);
   if (j.cols() < m) refuse(model, x);
   if (m > 0) {
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(j);
@@ -66,29 +75,38 @@ void CoordinatePartition::number(const Model& model, const Constraints& c) {
     if (column_of[static_cast<size_t>(i)] < 0) independent_.push_back(i);
 
   const auto m = static_cast<Eigen::Index>(dependent_.size());
-  row_scale_ = rows_.row_scale();
+  std::vector<int> index_of_row(static_cast<size_t>(model.n_constraints()), -1);
+  row_scale_.resize(m);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const int row = kept_rows_[static_cast<size_t>(k)];
+    index_of_row[static_cast<size_t>(row)] = static_cast<int>(k);
+    row_scale_[k] = rows_.row_scale()[row];
+  }
   column_scale_.resize(m);
   for (Eigen::Index k = 0; k < m; ++k)
     column_scale_[k] = 1 / rows_.scales()[dependent_[static_cast<size_t>(k)]];
   std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& entry : c.jacobian)
-    if (const int column = column_of[static_cast<size_t>(entry.col())]; column >= 0)
-      entries.emplace_back(entry.row(), column, 1.0);
+  for (const auto& entry : c.jacobian) {
+    const int row = index_of_row[static_cast<size_t>(entry.row())],
+              column = column_of[static_cast<size_t>(entry.col())];
+    if (row >= 0 && column >= 0) entries.emplace_back(row, column, 1.0);
+  }
   matrix_.resize(m, m);
   matrix_.setFromTriplets(entries.begin(), entries.end());
   matrix_.makeCompressed();
   value_indices_.clear();
   weights_.clear();
   for (const auto& entry : c.jacobian) {
-    const int column = column_of[static_cast<size_t>(entry.col())];
+    const int row = index_of_row[static_cast<size_t>(entry.row())],
+              column = column_of[static_cast<size_t>(entry.col())];
     value_indices_.push_back(-1);
     weights_.push_back(0);
-    if (column < 0) continue;
+    if (row < 0 || column < 0) continue;
     const int* first = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
     const int* last = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
     value_indices_.back() =
-        static_cast<int>(std::lower_bound(first, last, entry.row()) - matrix_.innerIndexPtr());
-    weights_.back() = row_scale_[entry.row()] * column_scale_[column];
+        static_cast<int>(std::lower_bound(first, last, row) - matrix_.innerIndexPtr());
+    weights_.back() = row_scale_[row] * column_scale_[column];
   }
   factored_.resize(matrix_.nonZeros());
   lu_.analyze(matrix_);
@@ -109,13 +127,15 @@ void CoordinatePartition::factorize(const Constraints& c) {
 }
 
 void CoordinatePartition::archive(Archive& memory) {
-  memory(independent_, dependent_, value_indices_, weights_, row_scale_, column_scale_, matrix_,
-         factored_, is_factored_);
+  memory(independent_, dependent_, kept_rows_, value_indices_, weights_, row_scale_, column_scale_,
+         matrix_, factored_, is_factored_);
   lu_.archive(memory, matrix_);
 }
 
 void CoordinatePartition::solve(const VectorXd& right, VectorXd& out) const {
-  out = row_scale_.cwiseProduct(right);
+  out.resize(row_scale_.size());
+  for (Eigen::Index k = 0; k < out.size(); ++k)
+    out[k] = row_scale_[k] * right[kept_rows_[static_cast<size_t>(k)]];
   lu_.solve(out);
   out.array() *= column_scale_.array();
 }

@@ -14,7 +14,8 @@ namespace flexmorph::fem {
 /// The dependent unknowns are the first m pivots of a QR factorization of J with column pivoting
 /// (ScaledConstraints: unknowns as displacements, rows of unit size). The constraints are best
 /// conditioned for these unknowns, within the limits of a greedy choice. Unknowns that do not occur
-/// in any constraint are always independent.
+/// in any constraint are always independent. Rows that the model leaves out (Model::leave_out())
+/// take no part.
 ///
 /// Source: Wehage & Haug (1982), J. Mech. Des. 104, 247-255, with QR in place of their LU.
 class CoordinatePartition {
@@ -24,7 +25,8 @@ class CoordinatePartition {
   /// @throws Error (numerical) naming the joints if the constraints are dependent.
   bool choose(Workspace& model, const State& x);
 
-  /// Returns the indices of the independent unknowns (n - m), in ascending order.
+  /// Returns the indices of the independent unknowns (n - m; m is the number of rows that are not
+  /// left out), in ascending order.
   const std::vector<int>& independent() const { return independent_; }
   /// Returns the indices of the dependent unknowns (m), in ascending order.
   const std::vector<int>& dependent() const { return dependent_; }
@@ -32,7 +34,9 @@ class CoordinatePartition {
   /// Factors Φ_qd at the state of c, unless it has not changed since the last factorization.
   /// @throws Error (numerical) if Φ_qd is singular or not finite.
   void factorize(const Constraints& c);
-  /// Computes out (m) = Φ_qd⁻¹ right (m) with the last factorization, in the order of dependent().
+  /// Computes out (m) = Φ_qd⁻¹ right with the last factorization, in the order of dependent().
+  /// @param right  Right side of all constraint rows (n_constraints); rows that are left out are
+  ///               ignored.
   void solve(const VectorXd& right, VectorXd& out) const;
   /// Returns an estimate of ‖Φ_qd⁻¹‖₁ of the last factorize(), scaled like J. Errors of
   /// independent unknowns are amplified by about this factor in dependent ones. It is 1 at best,
@@ -44,7 +48,7 @@ class CoordinatePartition {
  private:
   void number(const Model& model, const Constraints& c);
 
-  std::vector<int> independent_, dependent_;
+  std::vector<int> independent_, dependent_, kept_rows_;
   std::vector<int> value_indices_;  // index of each triplet of Φ_q in the matrix; -1: independent
   std::vector<double> weights_;     // scale of each triplet
   VectorXd row_scale_, column_scale_;

@@ -9,13 +9,13 @@
 #include "fem/dynamics/force_balance.h"
 #include "fem/dynamics/integrators/acceleration_solver.h"
 #include "fem/dynamics/integrators/coordinate_partition.h"
+#include "fem/solve/branch_watch.h"
 #include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
 
 namespace odeint = boost::numeric::odeint;
-
 using Numbers = std::vector<double>;
 using DormandPrince = odeint::runge_kutta_dopri5<Numbers>;
 
@@ -33,8 +33,8 @@ constexpr double kCorrection = 0.1;
 /// distinguish between two branches.
 constexpr double kDeteriorated = 2, kAmbiguous = 50;
 /// Shortest step, as a fraction of an advance(). Shorter steps are not due to stiffness but to a
-/// singularity or a discontinuity.
-constexpr double kShortest = 1e-12;
+/// singularity or a discontinuity. Steps up to kCrossing pass positions where branches meet.
+constexpr double kShortest = 1e-12, kCrossing = 1.0 / 64;
 /// Lower limit of the speed to which velocity errors are related: a displacement of this fraction
 /// of the model's size in one step. Without it a model at zero velocity would have no reference.
 constexpr double kLongRun = 1e-3;
@@ -75,20 +75,22 @@ using Stepper = odeint::controlled_runge_kutta<DormandPrince, ErrorInScaledUnits
 
 struct MinimalCoordinates::Impl {
   Impl(Workspace& m, const MinimalCoordinatesSettings& s)
-      : model(m), settings(s), accelerations(m), stepper(make_stepper()) {}
+      : model(m), settings(s), accelerations(m), branch(m), stepper(make_stepper()) {}
 
   Workspace& model;
   MinimalCoordinatesSettings settings;
   StepCounts counts;
   AccelerationSolver accelerations;
   CoordinatePartition partition;
+  BranchWatch branch;
   int version = -1;  // pattern version of the model at the last choice of the partition
   VectorXd scales;
   double size = 1;
   double amplification = 1, best_amplification = 1;  // at the last step; best since the choice
   Numbers y, independent_scales;
   Stepper stepper;
-  double step = 0;        // size of the next step; 0: unknown
+  double step = 0,
+         whole = 0;       // size of the next step (0: unknown); length of the present advance()
   State last;             // last accepted state; steps from it reuse the stepper's derivative
   Numbers rate;           // derivative of y, from the last stage of the previous step
   bool is_begun = false;  // true if `rate` is valid
@@ -144,9 +146,8 @@ struct MinimalCoordinates::Impl {
 
   double displacement(const VectorXd& of_dependent) const {
     double out = 0;
-    for (size_t k = 0; k < partition.dependent().size(); ++k)
-      out = std::max(out, scales[partition.dependent()[k]] *
-                              std::abs(of_dependent[static_cast<Eigen::Index>(k)]));
+    for (Eigen::Index k = 0; const int i : partition.dependent())
+      out = std::max(out, scales[i] * std::abs(of_dependent[k++]));
     return out;
   }
 
@@ -191,8 +192,7 @@ void MinimalCoordinates::Impl::find_velocities() {
   for (const auto& entry : constraints.jacobian)
     right[entry.row()] -= entry.value() * at.v[entry.col()];
   partition.solve(right, correction);
-  for (size_t k = 0; k < dependent.size(); ++k)
-    at.v[dependent[k]] = correction[static_cast<Eigen::Index>(k)];
+  for (Eigen::Index k = 0; const int i : dependent) at.v[i] = correction[k++];
 }
 
 /// Computes ẏ at (y, t); `at` becomes the complete state there.
@@ -233,13 +233,14 @@ bool MinimalCoordinates::Impl::try_step(const State& x, double& h, std::string& 
   double t = x.t;
   reason.clear();
   try {
-    const auto system = [this](const Numbers& from, Numbers& rate, double time) {
-      evaluate(from, rate, time);
-    };
+    const auto system = [this](const auto& from, auto& to, double s) { evaluate(from, to, s); };
     rate.resize(y.size());
     if (!is_begun) evaluate(y, rate, t);
     is_begun = true;
+    branch.begin(last);
     if (stepper.try_step(system, y, rate, t, h) == odeint::fail) return false;
+    reason = branch.refusal(at.q, at.t, tried <= kCrossing * whole);
+    if (!reason.empty()) throw Error::numerical(reason);
     amplification = partition.amplification();
     if (amplification <= kAmbiguous * best_amplification) return true;
     throw Error::numerical("the independent coordinates no longer determine the others");
@@ -360,14 +361,14 @@ VectorXd MinimalCoordinates::balance(State& x, double frequency) {
 void MinimalCoordinates::advance(State& x, double t_end,
                                  const std::function<void(const State&)>& accepted) {
   Impl& s = *impl_;
-  const double whole = t_end - x.t;
+  s.whole = t_end - x.t;
   if (s.version != s.model.pattern_version()) {
     s.choose(x);
     s.step = 0;
   } else if (x.t != s.last.t || x.q != s.last.q || x.v != s.last.v) {
     s.start(x);
   }
-  if (!(s.step > 0)) s.step = 0.01 * whole;
+  if (!(s.step > 0)) s.step = 0.01 * s.whole;
   std::string reason;
   for (int tried = 0; x.t < t_end; ++tried) {
     // The last two steps are adjusted, so that no short step remains before the end.
@@ -380,7 +381,7 @@ void MinimalCoordinates::advance(State& x, double t_end,
     if (!s.try_step(x, h, reason)) {
       ++s.counts.rejected;
       s.step = h;
-      if (h < kShortest * whole) s.give_up(x, h, reason);
+      if (h < kShortest * s.whole) s.give_up(x, h, reason);
       continue;
     }
     s.step = is_cut ? std::max(own, h) : h;

@@ -15,12 +15,22 @@ namespace {
 // Ratio of error and allowed error below which slow contraction does not prevent a growth of the
 // step.
 constexpr double kMaxChange = 0.1;
+// Largest correction of a predicted position of rigid bodies, relative to the predicted motion or
+// to kPartOfSize of the model if that is larger. A larger correction may lead to another branch.
+constexpr double kCorrection = 0.1, kPartOfSize = 0.2;
+// Fraction of a step below which a position where branches meet is passed, see
+// BranchWatch::refusal().
+constexpr double kCrossing = 1.0 / 64;
 
 }  // namespace
 
 StepSolver::StepSolver(Workspace& model, const StepSettings& settings, std::string name,
                        std::string advice)
-    : model_(model), settings_(settings), name_(std::move(name)), advice_(std::move(advice)) {
+    : model_(model),
+      settings_(settings),
+      name_(std::move(name)),
+      advice_(std::move(advice)),
+      branch_(model) {
   if (!(settings.tolerance > 0) || settings.max_iterations < 1 || settings.max_halvings < 0)
     throw Error::input(
         name_ +
@@ -31,6 +41,10 @@ void StepSolver::set_scales() {
   if (scaled_version_ == model_.pattern_version()) return;
   scales_ = model_.scales();
   size_ = undeformed_size(model_, scales_);
+  rigid_dofs_.clear();
+  for (const Body& b : model_.bodies())
+    if (b.element->is_rigid())
+      for (int k = 0; k < b.n_dofs(); ++k) rigid_dofs_.push_back(b.first_dof + k);
   scaled_version_ = model_.pattern_version();
 }
 
@@ -142,12 +156,31 @@ void StepSolver::solve_kept(const VectorXd& force, const VectorXd& constraint, V
   mu = solution_.tail(model_.n_constraints());
 }
 
+bool StepSolver::stays_on_branch(const State& x, double h) {
+  if (rigid_dofs_.empty()) return true;
+  const VectorXd& end = iterate();
+  double motion = 0, correction = 0;
+  for (const int i : rigid_dofs_) {
+    motion = std::max(motion, scales_[i] * std::abs(predicted_[i] - x.q[i]));
+    correction = std::max(correction, scales_[i] * std::abs(end[i] - predicted_[i]));
+  }
+  failure_ = correction > kCorrection * std::max(motion, kPartOfSize * size_)
+                 ? formatted("rigid bodies move by %.2g m more than predicted", correction)
+                 : branch_.refusal(end, x.t + h, std::abs(h) <= crossing_h_);
+  history_ += failure_;
+  return failure_.empty();
+}
+
 TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
   history_.clear();
+  failure_.clear();
+  set_scales();
   const int before = counts_.newton;
   try {
+    branch_.begin(x);
     begin(x, h);
-    if (newton(h)) {
+    predicted_ = iterate();
+    if (newton(h) && stays_on_branch(x, h)) {
       TriedStep out{true, std::isfinite(allowed) ? local_error(x, allowed) : 0,
                     counts_.newton - before};
       // If the error is this small, slow contraction of a kept tangent must not keep the step
@@ -193,6 +226,7 @@ TriedStep StepSolver::try_step(State& x, double h, double allowed) {
     return out;
   }
   failures_ = 0;
+  crossing_h_ = kCrossing * std::abs(h);
   ++(out.error <= allowed ? counts_.steps : counts_.inaccurate);
   return out;
 }
@@ -247,6 +281,13 @@ bool StepSolver::newton(double h) {
 }
 
 void StepSolver::give_up(const State& x, double h, int failures) const {
+  if (!failure_.empty())
+    throw Error::numerical(
+        name_ +
+        formatted(": no step can be made at t = %.6g s, step %d, with step size %.2e s "
+                  "after %d halvings: ",
+                  x.t, counts_.steps + 1, h, failures - 1) +
+        failure_ + ". " + advice_);
   const std::string text = formatted(
       ": Newton's method does not converge at t = %.6g s, step %d, with step size %.2e s after %d "
       "halvings; the smallest area ratio is %.2e (iterations ",
@@ -269,6 +310,7 @@ void StepSolver::advance(State& x, double t_end,
   const double whole = t_end - x.t;
   double h = whole;
   int halvings = 0;
+  crossing_h_ = kCrossing * whole;
   while (x.t < t_end) {
     if (x.t + h > t_end - 1e-9 * whole) h = t_end - x.t;
     if (solve_step(x, h, std::numeric_limits<double>::infinity()).converged) {

@@ -2,6 +2,7 @@
 
 #include "fem/dynamics/integrators/integrator.h"
 #include "fem/dynamics/starts/body_turns.h"
+#include "fem/solve/branch_watch.h"
 #include "fem/solve/linear_solver.h"
 
 namespace flexmorph::fem {
@@ -9,6 +10,11 @@ namespace flexmorph::fem {
 /// Base class of implicit one-step integrators of index-3 equations. It provides the scaling of
 /// unknowns and equations, a tangent that is kept as long as it contracts, Newton's method, and the
 /// halving of steps that fail. The virtual functions below define the scheme.
+///
+/// A step fails, too, if it ends on another branch of the joints: if loops of rigid bodies are on
+/// another branch (BranchWatch), if Newton's method moves rigid bodies by more than a tenth of the
+/// predicted motion (or of a fifth of the model's size, if this is larger), or if redundant joints
+/// that are left out (Model::leave_out()) are violated.
 ///
 /// Slopes (position gradients) are scaled by the element size, and constraints and multipliers by
 /// scale() of the step. Then the condition of the iteration matrix does not depend on h (Bottasso,
@@ -110,6 +116,9 @@ class StepSolver : public Integrator {
   /// Scales the entries of kkt_ among the chosen unknowns (empty: all), such that unknowns become
   /// displacements and equations become virtual work on them.
   void scale_kkt(const std::vector<char>& chosen);
+  /// Returns true if the converged step from x to x.t + h stays on the branch of x; otherwise
+  /// history_ and failure_ have the reason.
+  bool stays_on_branch(const State& x, double h);
   /// Calls finish() for a converged step. Returns false and leaves x unchanged if Newton's method
   /// has converged to a solution with material turned inside out. Only steps with large corrections
   /// can find such a solution; therefore other steps are not checked.
@@ -140,6 +149,11 @@ class StepSolver : public Integrator {
   Constraints constraints_;
   VectorXd force_, constraint_, right_, solution_, dq_, mu_;
   std::string history_;  // history of the residuals of the last step
+  std::string failure_;  // reason why the last step failed although Newton's method converged
+  BranchWatch branch_;
+  VectorXd predicted_;           // positions at the end of the step, before Newton's method
+  std::vector<int> rigid_dofs_;  // unknowns of rigid bodies
+  double crossing_h_ = 0;        // step size below which branches that meet may be passed
 };
 
 }  // namespace flexmorph::fem

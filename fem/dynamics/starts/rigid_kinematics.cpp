@@ -5,7 +5,9 @@
 #include <numbers>
 
 #include "fem/body_joints.h"
+#include "fem/dynamics/starts/other_start.h"
 #include "fem/solve/assembly.h"
+#include "geometry/text.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -96,12 +98,51 @@ Error RigidKinematics::refusal(const Diagnosis& diagnosis) const {
   return Error::input(words);
 }
 
+/// Tries other starts than the guess. x is the best fit from the guess, and becomes the position
+/// that is found.
+/// @returns false if x meets the positions of all joints, or if no position is found
+bool RigidKinematics::assemble_elsewhere(const State& guess, State& x) {
+  constexpr double kMet = 1e-9;  // in sizes of the model
+  constexpr size_t kMaxListed = 5;
+  ScaledConstraints rows;
+  rows.evaluate(model_, x);
+  if (rows.misses().lpNorm<Eigen::Infinity>() <= kMet * model_size(rows.scales(), x.q))
+    return false;
+  const std::optional<OtherStart> found = other_start(model_, guess);
+  if (!found) return false;
+  x = found->x;
+  remark_ =
+      "The given initial positions of the bodies do not lead to a position that meets all joints. "
+      "Of " +
+      std::to_string(found->tried) + " other starts, " + std::to_string(found->assembled) +
+      " lead to " +
+      (found->assemblies == 1 ? std::string("one position")
+                              : std::to_string(found->assemblies) +
+                                    " different positions, of which the nearest is "
+                                    "taken") +
+      ": ";
+  size_t listed = 0;
+  for (const MechanismBody& b : mechanism_.bodies) {
+    const FrameMotion f = frame(b.name, x);
+    const double turn = std::remainder(f.angle - b.angle, 2 * std::numbers::pi);
+    if ((f.origin - b.position).norm() <= kMet && std::abs(turn) <= kMet) continue;
+    if (listed++ < kMaxListed)
+      remark_ += (listed == 1 ? "" : ", ") + formatted("'%s' position [%.6g, %.6g] angle %.6g",
+                                                       b.name.c_str(), f.origin.x(), f.origin.y(),
+                                                       b.angle + turn);
+  }
+  if (listed > kMaxListed) remark_ += " and " + std::to_string(listed - kMaxListed) + " more";
+  remark_ += ". To choose a position, give values near it in the case";
+  return true;
+}
+
 bool RigidKinematics::assemble(State& x) {
   const State guess = x;
   try {
     fem::assemble(model_, x);
     return true;
   } catch (const Error& error) {
+    if (error.kind() != Error::Kind::input && assemble_elsewhere(guess, x)) return true;
     const Diagnosis anywhere = diagnose(model_, guess);
     if (error.kind() == Error::Kind::input || anywhere.is_independent()) throw;
     const Diagnosis nearest = diagnose(model_, x);  // x is the best fit
@@ -148,7 +189,7 @@ int undriven_degrees_of_freedom(const RigidKinematics& kinematics) {
   RigidKinematics free(
       released(kinematics.mechanism(), [](const MechanismJoint&) { return true; }));
   State x = free.guess();
-  fem::assemble(free.model(), x);
+  free.assemble(x);
   return degrees_of_freedom(free.model(), x);
 }
 

@@ -117,12 +117,17 @@ class RigidKinematics {
   /// Returns the state at zero velocity with all bodies at the positions of their data, which may
   /// violate the joints.
   State guess() const;
-  /// Assembles a state (fem/solve/assembly.h).
+  /// Assembles a state (fem/solve/assembly.h). If the given positions do not lead to an assembled
+  /// position, other starts are tried (other_start()), and remark() has a text about the position
+  /// that was found.
   /// @returns false if assembled positions exist, but only flexible bodies can have velocities; all
   /// velocities are 0 then.
   /// @throws Error as assemble(); Error (input) as refusal() if joints contradict each other for
   /// all positions of the bodies.
   bool assemble(State& x);
+  /// Returns a text about the position that assemble() has found from other starts; empty if the
+  /// given positions led to an assembled position.
+  const std::string& remark() const { return remark_; }
   /// Returns the error that names the joints that contradict each other or constrain a degree of
   /// freedom repeatedly. For many joints it also lists those that prescribe a coordinate,
   /// because they are the most likely cause.
@@ -137,9 +142,11 @@ class RigidKinematics {
 
  private:
   FrameMotion frame_at(const MarkerLocation& location, const State& x) const;
+  bool assemble_elsewhere(const State& guess, State& x);
 
   RigidMechanism mechanism_;
   Workspace model_;
+  std::string remark_;
 };
 
 /// Returns the mechanism with all driven joints released for which `chosen` returns true.

@@ -1,6 +1,7 @@
 #include "fem/dynamics/starts/rigid_motion.h"
 
 #include "fem/dynamics/integrators/integrator.h"
+#include "fem/solve/redundancy.h"
 
 namespace flexmorph::fem {
 
@@ -9,8 +10,11 @@ RigidMotion::RigidMotion(RigidKinematics kinematics)
   const bool moves = kinematics_.assemble(start_);
   const Diagnosis diagnosis = diagnose(kinematics_.model(), start_);
   indeterminate_ = !diagnosis.is_independent();
-  if (indeterminate_ && (!kinematics_.mechanism().bends || diagnosis.misses_positions()))
+  if (diagnosis.is_contradictory() &&
+      (!kinematics_.mechanism().bends || diagnosis.misses_positions()))
     throw kinematics_.refusal(diagnosis);
+  if (indeterminate_ && !kinematics_.mechanism().bends)
+    leave_out_redundant(kinematics_.model(), start_);
   if (moves) give_initial_velocities(kinematics_, start_);
   dofs_ = diagnosis.degrees_of_freedom();
   if (dofs_ > 0 || (indeterminate_ && diagnosis.is_contradictory())) return;
@@ -48,7 +52,8 @@ void require_motion(RigidKinematics kinematics, double end) {
   constexpr int kTimes = 200;
   RigidMotion motion(std::move(kinematics));
   // Flexible plates may reach positions that the rigid model cannot reach.
-  if (motion.degrees_of_freedom() > 0 || motion.is_indeterminate()) return;
+  const bool bends = motion.kinematics().mechanism().bends;
+  if (motion.degrees_of_freedom() > 0 || (bends && motion.is_indeterminate())) return;
   // For drives with thousands of revolutions it is sufficient to check the first ones.
   constexpr int kMaxSteps = 4000;
   for (int k = 1; k <= kTimes; ++k)

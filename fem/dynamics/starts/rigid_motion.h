@@ -16,7 +16,8 @@ class RigidMotion {
  public:
   /// Creates the motion and assembles its initial state.
   /// @throws Error (input) naming joints that contradict each other or, without flexible bodies,
-  /// constrain a degree of freedom repeatedly, and for given velocities that contradict joints;
+  /// depend on each other at the start only (dead centre), and for given velocities that contradict
+  /// joints;
   /// Error (numerical) if the initial state cannot be assembled for another reason.
   explicit RigidMotion(RigidKinematics kinematics);
   RigidMotion(const RigidMotion&) = delete;
@@ -58,8 +59,8 @@ class RigidMotion {
       driven_;  // only if drives determine the motion; refers to kinematics_
 };
 
-/// Checks that a mechanism can follow its drives: throws an error if joints depend on each other at
-/// the start, or if a position before the time `end` [s] cannot be reached.
+/// Checks that a mechanism can follow its drives: throws an error if joints contradict each other
+/// at the start, or if a position before the time `end` [s] cannot be reached.
 /// @throws Error as RigidMotion.
 void require_motion(RigidKinematics kinematics, double end);
 

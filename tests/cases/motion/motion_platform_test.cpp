@@ -172,7 +172,7 @@ TEST_F(MotionPlatform, ChangesOfTheMeshAreWhatTheLengthsDemandAndDoNoHarm) {
   const fem::MotionResult r = fem::integrate(
       mechanism.model, mechanism.moving_roots, mechanism.motion, [&](const fem::MotionStep& step) {
         kinetic = std::max(kinetic, step.energies.kinetic);
-        largest_momentum = std::max(largest_momentum, fem::momentum(step.model, step.x).norm());
+        largest_momentum = std::max(largest_momentum, step.model.momentum(step.x).norm());
       });
   for (const auto& [bar, want] :
        {std::pair{"bar1", demanded(length1, length1(0), scene_.body("bar1").elements[0])},

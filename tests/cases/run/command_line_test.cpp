@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cases/check/ready.h"
 #include "tests/cases/program.h"
 #include "tests/support/errors.h"
 
@@ -77,18 +78,28 @@ TEST(CommandLine, FindsFilesBesideTheCase) {
                                     "flexmorph: --set design.start=\"start.csv\": "));
 }
 
+/// Returns the first word of each line.
+Words shipped_names(const std::string& text) {
+  Words out;
+  for (const std::string& line : lines_of(text)) out.push_back(line.substr(0, line.find(' ')));
+  return out;
+}
+
 TEST(CommandLine, ListsTheShippedCases) {
   const Scratch scratch;
   const Ended ended = flexmorph(scratch, {"cases"});
   EXPECT_EQ(ended.code, 0);
-  const Words names = lines_of(ended.out);
+  const Words names = shipped_names(ended.out);
   for (const char* name : {"rotating_plate_v01", "rotating_plate_v05"})
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+  // Each name is followed by the title of its case.
+  EXPECT_TRUE(contains(ended.out, "four_bar  ")) << ended.out;
+  EXPECT_TRUE(contains(ended.out, cases::title_of_case("four_bar") + "\n")) << ended.out;
 }
 
 TEST(CommandLine, EveryShippedCaseChecks) {
   const Scratch scratch;
-  for (const std::string& name : lines_of(flexmorph(scratch, {"cases"}).out)) {
+  for (const std::string& name : shipped_names(flexmorph(scratch, {"cases"}).out)) {
     const Ended ended = flexmorph(scratch, {"check", name});
     EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_TRUE(contains(ended.out, "\nactive\n"));

@@ -79,7 +79,7 @@ TEST_F(Drives, AreRefusedWithTheirLocation) {
       {{"drive.turn.table=[[0, 0], [0.5, 1, 2]]"}, {"list", "2 numbers"}},
       {{"drive.side.csv=\"nowhere.csv\""}, {"nowhere.csv"}},
       {{"drive.side.column=z"}, {"'side.csv'", "'z'", "'time', 'y', 'note'"}},
-      {{"drive.side.column=note"}, {"drive.side.csv", "row 1", "finite"}},
+      {{"drive.side.column=note"}, {"drive.side.csv", "side.csv:2", "number"}},
       {{"drive.side.name=out"}, {"another", "'out'"}},
       {{"constants.pi=3"}, {"reserved"}},
       {{"constants.L0=long"}, {"constant", "number"}},

@@ -120,6 +120,8 @@ TEST(Figures, WrongUnitsAreOutOfTheOrdinary) {
   for (const Row& row : std::vector<Row>{
            {"deploying_plate", "body.youngs_modulus=7", {"Young's modulus", "7 Pa"}},
            {"deploying_plate", "body.youngs_modulus=7e6", {"gravity", "166"}},
+           {"deploying_plate", "body.youngs_modulus=70000", {"Young's modulus", "70000 MPa"}},
+           {"l_bracket", "domain.youngs_modulus=210000", {"Young's modulus", "210000 MPa"}},
            {"deploying_plate", "body.density=2.7", {"density", "2.7 kg/m^3"}},
            {"deploying_plate", "body.thickness=5", {"length / thickness", "0.18"}},
            {"deploying_plate", "body.thickness=5e-6", {"length / thickness", "1.8e+05"}},
@@ -138,7 +140,7 @@ TEST(Figures, WrongUnitsAreOutOfTheOrdinary) {
     Changes changes = {row.change};
     for (const char* part :
          {"design=", "esl=", "optimizer=", "cycle=", "verify=", "accuracy=", "expect=", "observe="})
-      changes.emplace_back(part);
+      if (row.name != std::string("l_bracket")) changes.emplace_back(part);
     bool found = false;
     std::string all;
     for (const std::string& each : plausibility_remarks(read(row.name, changes))) {

@@ -171,13 +171,19 @@ TEST(InitialVelocities, ThatContradictJointsAreRefusedWithTheirSource) {
   }
 }
 
-TEST(RigidMotion, JointsThatHoldTheSameFreedomAreRefusedUnlessBodiesBend) {
+TEST(RigidMotion, RedundantJointsAreFollowedAndContradictionsRefused) {
   RigidMechanism mechanism = slider_crank(0.2, 0.5, 1.1);
-  hinge(mechanism, "again", {}, {"crank"});
+  RigidMechanism twice = mechanism;
+  hinge(twice, "again", {}, {"crank"});
+  for (const bool bends : {false, true}) {
+    twice.bends = bends;
+    RigidMotion motion{RigidKinematics(twice)};
+    EXPECT_TRUE(motion.is_indeterminate());
+    EXPECT_EQ(motion.degrees_of_freedom(),
+              RigidMotion{RigidKinematics(mechanism)}.degrees_of_freedom());
+  }
+  hinge(mechanism, "elsewhere", {"", {0.01, 0}}, {"crank"});
   EXPECT_THROW(RigidMotion{RigidKinematics(mechanism)}, Error);
-  mechanism.bends = true;
-  RigidMotion motion{RigidKinematics(mechanism)};
-  EXPECT_TRUE(motion.is_indeterminate());
 }
 
 TEST(RigidMotion, ListsTheBodiesThatRideInNoHub) {
