@@ -10,8 +10,10 @@ constexpr const char *kCopper =
                          "expansion: CRC Handbook of Chemistry and Physics",
                      *kPlastics =
                          "Dowling, Mechanical Behavior of Materials, table 5.2; density and "
-                         "expansion: Machinery's Handbook, properties of plastics";
+                         "expansion: engineersedge.com, properties of plastics";
 
+// The numbers were not compared with the text of the standards and handbooks that are named here.
+// Therefore all places that print them say so.
 const Material kMaterials[] = {
     {"steel", 7850, 210e9, 0.3, 12e-6, "EN 1993-1-1, 3.2.6; density: EN 1993-1-2, 3.2.2"},
     {"stainless_steel", 7900, 200e9, 0.3, 16e-6,
@@ -36,8 +38,8 @@ const Material kMaterials[] = {
      1.08e9,
      0.42,
      {},
-     "high density: Dowling, Mechanical Behavior of Materials, table 5.2; density: Machinery's "
-     "Handbook, properties of plastics"}};
+     "high density: Dowling, Mechanical Behavior of Materials, table 5.2; density: "
+     "engineersedge.com, properties of plastics"}};
 
 }  // namespace
 
@@ -56,7 +58,8 @@ io::Glossary material_glossary() {
                         io::to_text(m.youngs_modulus / 1e9) + " GPa, Poisson's ratio " +
                         io::to_text(m.poisson_ratio);
     if (m.expansion) words += ", thermal expansion " + io::to_text(*m.expansion) + " 1/K";
-    out.emplace_back(m.name, words + " (" + m.source + ").");
+    out.emplace_back(m.name,
+                     words + " (nominal, not checked against the source: " + m.source + ").");
   }
   return out;
 }
