@@ -35,14 +35,21 @@ int rank(const io::Key& key) {
   return key.name == "type" || key.name == "element" ? 1 : 2;
 }
 
+/// Returns the path of the file that declares a key, from the folder cases/ on. The path before it
+/// depends on how the compiler was called: absolute, or relative to the build folder with ccache.
+std::string file_of(const io::Key& key) {
+  const std::string path = key.location.file_name();
+  const size_t at = path.rfind("cases/");
+  return at == std::string::npos ? path : path.substr(at);
+}
+
 std::vector<const io::Key*> keys_of(const std::string& table) {
   std::vector<const io::Key*> out;
   for (const io::Key& key : io::all_keys())
     if (has(key, table)) out.push_back(&key);
   std::stable_sort(out.begin(), out.end(), [](const io::Key* a, const io::Key* b) {
-    const std::string first = a->location.file_name(), second = b->location.file_name();
-    return std::make_tuple(rank(*a), first, a->location.line(), a->location.column()) <
-           std::make_tuple(rank(*b), second, b->location.line(), b->location.column());
+    return std::make_tuple(rank(*a), file_of(*a), a->location.line(), a->location.column()) <
+           std::make_tuple(rank(*b), file_of(*b), b->location.line(), b->location.column());
   });
   return out;
 }
