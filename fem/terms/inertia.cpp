@@ -162,7 +162,7 @@ class Inertia final : public Term,
  private:
   using LocalSquare =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxShapes, kMaxShapes>;
-  /// Matrices of an element, of its size: with room for kMaxShapes they would not fit into caches.
+  /// Matrices of an element, of its size: with space for kMaxShapes they would not fit into caches.
   struct Matrices {
     bool flows = false;
     MatrixXd mass;

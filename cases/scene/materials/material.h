@@ -9,7 +9,7 @@
 /// Materials that a case can name instead of giving their numbers.
 namespace flexmorph::cases {
 
-/// The numbers of a material at room temperature.
+/// Nominal numbers of a material.
 struct Material {
   const char* name;       ///< Name in case files.
   double density;         ///< Density [kg/m^3].
@@ -17,7 +17,7 @@ struct Material {
   double poisson_ratio;   ///< Poisson's ratio [-].
   std::optional<double>
       expansion;       ///< Coefficient of thermal expansion [1/K], if the source has it.
-  const char* source;  ///< Publications from which the numbers are taken.
+  const char* source;  ///< Publications to check the numbers against, which was not done.
 };
 
 /// Returns all materials that a case can name.

@@ -177,9 +177,9 @@ TriedStep StepSolver::solve_step(State& x, double h, double allowed) {
   set_scales();
   const int before = counts_.newton;
   try {
-    branch_.begin(x);
+    if (!rigid_dofs_.empty()) branch_.begin(x);
     begin(x, h);
-    predicted_ = iterate();
+    if (!rigid_dofs_.empty()) predicted_ = iterate();
     if (newton(h) && stays_on_branch(x, h)) {
       TriedStep out{true, std::isfinite(allowed) ? local_error(x, allowed) : 0,
                     counts_.newton - before};

@@ -28,27 +28,17 @@ inline int factor_triangle(double* a, std::ptrdiff_t ld, int n) {
   return -1;
 }
 
-/// Subtracts the product of the columns before c from the columns [c, c + kColumns) of the rows of
+/// Subtracts the product of the columns before c from the columns [c, c + kTile) of the rows of
 /// one tile, and with `solve` divides by the triangle of these columns.
 /// @param block  first row and column
-template <class T, int kColumns, int kPacks>
+template <class T, int kTile, int kPacks>
 inline void factor_rows(double* block, std::ptrdiff_t ld, int c, int row, bool solve) {
-  T y[kColumns][kPacks];
+  T y[kTile][kPacks];
   double* target = block + c * ld + row;
   read<T>(y, [&](int t) { return target + t * ld; });
   subtract(
       y, c, [&](int k) { return block + k * ld + row; }, block + c, ld, 1);
-  if (solve) {
-    const double* L = block + c * ld + c;
-#pragma GCC unroll 8
-    for (int t = 0; t < kColumns; ++t)
-#pragma GCC unroll 4
-      for (int p = 0; p < kPacks; ++p) {
-#pragma GCC unroll 8
-        for (int s = 0; s < t; ++s) y[t][p] -= L[s * ld + t] * y[s][p];
-        y[t][p] = y[t][p] / L[t * ld + t];
-      }
-  }
+  if (solve) solve_lower(y, block + c * ld + c, ld);
   write<T>(y, [&](int t) { return target + t * ld; });
 }
 
@@ -57,7 +47,7 @@ inline void factor_rows(double* block, std::ptrdiff_t ld, int c, int row, bool s
 template <class V>
 inline int factor_panel(double* block, std::ptrdiff_t ld, int width, int height) {
   int failed = -1;
-  const auto columns = [&]<int n>(int c) {
+  each_group<kColumns<V>>(0, width, [&]<int n>(int c) {
     // Rows of the triangle are computed one by one, entries above the diagonal are not used.
     for (int r = c; r < c + n; ++r) factor_rows<double, n, 1>(block, ld, c, r, false);
     failed = factor_triangle(block + c * ld + c, ld, n);
@@ -69,19 +59,8 @@ inline int factor_panel(double* block, std::ptrdiff_t ld, int width, int height)
       factor_rows<T, n, kPacks>(block, ld, c, c + n + r, true);
     });
     return true;
-  };
-  int c = 0;
-  constexpr int kColumns = V::kParts == 1 ? 8 : 4;
-  for (; c + kColumns <= width; c += kColumns)
-    if (!columns.template operator()<kColumns>(c)) return failed;
-  if constexpr (kColumns > 4)
-    for (; c + 4 <= width; c += 4)
-      if (!columns.template operator()<4>(c)) return failed;
-  for (; c + 2 <= width; c += 2)
-    if (!columns.template operator()<2>(c)) return failed;
-  for (; c < width; ++c)
-    if (!columns.template operator()<1>(c)) return failed;
-  return -1;
+  });
+  return failed;
 }
 
 /// Factors a block: its triangle becomes L, its rectangle B becomes B L⁻ᵀ.
@@ -106,11 +85,11 @@ inline int factor_block(double* block, int width, int height) {
   return -1;
 }
 
-/// Computes the columns [c, c + kColumns) of own <- keep * own - B Bᵀ in the rows of one tile.
-template <class T, int kColumns, int kPacks>
+/// Computes the columns [c, c + kTile) of own <- keep * own - B Bᵀ in the rows of one tile.
+template <class T, int kTile, int kPacks>
 inline void update_rows(const double* B, std::ptrdiff_t ld, int width, bool keep, double* own,
                         std::ptrdiff_t own_ld, int c, int row) {
-  T y[kColumns][kPacks];
+  T y[kTile][kPacks];
   double* target = own + c * own_ld + row;
   if (keep)
     read<T>(y, [&](int t) { return target + t * own_ld; });
@@ -133,18 +112,12 @@ inline void update(const double* B, int ld, int n, int width, bool keep, double*
     return;
   }
   run_batch_kernel([&]<class V>() {
-    const auto columns = [&]<int k>(int c) {
+    each_group<kColumns<V>>(0, n, [&]<int k>(int c) {
       each_tile<V>(n - c, [&]<class T, int kTile, int kPacks>(int r) {
         update_rows<T, k, kPacks>(B, ld, width, keep, own, n, c, c + r);
       });
-    };
-    int c = 0;
-    constexpr int kColumns = V::kParts == 1 ? 8 : 4;
-    for (; c + kColumns <= n; c += kColumns) columns.template operator()<kColumns>(c);
-    if constexpr (kColumns > 4)
-      for (; c + 4 <= n; c += 4) columns.template operator()<4>(c);
-    for (; c + 2 <= n; c += 2) columns.template operator()<2>(c);
-    for (; c < n; ++c) columns.template operator()<1>(c);
+      return true;
+    });
   });
 }
 

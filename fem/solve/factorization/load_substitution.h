@@ -39,17 +39,7 @@ inline void forward_rows(const LoadBlock& b, int load, int r) {
   const std::ptrdiff_t h = b.height;
   read<T>(y, of_tile);
   subtract(y, r < b.width ? r : b.width, at, b.block + r, h, 1);
-  if (r < b.width) {
-    const double* L = b.block + r * h + r;
-#pragma GCC unroll 8
-    for (int t = 0; t < kTile; ++t)
-#pragma GCC unroll 4
-      for (int p = 0; p < kPacks; ++p) {
-#pragma GCC unroll 8
-        for (int s = 0; s < t; ++s) y[t][p] -= L[s * h + t] * y[s][p];
-        y[t][p] = y[t][p] / L[t * h + t];
-      }
-  }
+  if (r < b.width) solve_lower(y, b.block + r * h + r, h);
   write<T>(y, of_tile);
 }
 
@@ -77,13 +67,11 @@ inline void backward_columns(const LoadBlock& b, int load, int c) {
 /// Computes L⁻¹ y for kPacks vectors of loads from `load` on.
 template <class T, int kTile, int kPacks>
 inline void forward(const LoadBlock& b, int load) {
-  const auto rows = [&](int r, int until) {
-    for (; r + kTile <= until; r += kTile) forward_rows<T, kTile, kPacks>(b, load, r);
-    if constexpr (kTile > 4)
-      for (; r + 4 <= until; r += 4) forward_rows<T, 4, kPacks>(b, load, r);
-    if constexpr (kTile > 2)
-      for (; r + 2 <= until; r += 2) forward_rows<T, 2, kPacks>(b, load, r);
-    for (; r < until; ++r) forward_rows<T, 1, kPacks>(b, load, r);
+  const auto rows = [&](int first, int last) {
+    each_group<kTile>(first, last, [&]<int n>(int r) {
+      forward_rows<T, n, kPacks>(b, load, r);
+      return true;
+    });
   };
   rows(0, b.width);
   rows(b.width, b.height);

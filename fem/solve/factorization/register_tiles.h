@@ -66,6 +66,40 @@ inline void subtract(T (&y)[kTile][kPacks], int count, const X& x, const double*
   }
 }
 
+/// Solves with the lower triangle L (kTile x kTile by columns, their distance ld): y <- L⁻¹ y.
+template <class T, int kTile, int kPacks>
+inline void solve_lower(T (&y)[kTile][kPacks], const double* L, std::ptrdiff_t ld) {
+#pragma GCC unroll 8
+  for (int t = 0; t < kTile; ++t)
+#pragma GCC unroll 4
+    for (int p = 0; p < kPacks; ++p) {
+#pragma GCC unroll 8
+      for (int s = 0; s < t; ++s) y[t][p] -= L[s * ld + t] * y[s][p];
+      y[t][p] = y[t][p] / L[t * ld + t];
+    }
+}
+
+/// Calls use<k>(first) for groups of k = kLargest, 4, 2 and 1 neighbours that cover [first, last),
+/// until a call returns false.
+/// @returns false if a call returned false
+template <int kLargest, class Use>
+inline bool each_group(int first, int last, const Use& use) {
+  bool keep_running = true;
+  const auto groups = [&]<int k>() {
+    for (; keep_running && first + k <= last; first += k)
+      keep_running = use.template operator()<k>(first);
+  };
+  groups.template operator()<kLargest>();
+  if constexpr (kLargest > 4) groups.template operator()<4>();
+  if constexpr (kLargest > 2) groups.template operator()<2>();
+  groups.template operator()<1>();
+  return keep_running;
+}
+
+/// Number of columns of a factor that are computed together.
+template <class V>
+inline constexpr int kColumns = V::kParts == 1 ? 8 : 4;
+
 /// Calls use<T, kTile, kPacks>(first) for tiles whose lanes cover [0, count). V is a pack of eight
 /// numbers in the registers of the processor; kTile rows of kPacks T fit into its registers.
 template <class V, class Use>

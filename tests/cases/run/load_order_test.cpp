@@ -5,22 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <numeric>
 #include <sstream>
 
 #include "tests/cases/program.h"
 
 namespace flexmorph::test {
 namespace {
-
-std::string bytes_of(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  EXPECT_TRUE(in) << file;
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 constexpr const char* kBracket = R"(title = "A bracket with three loads"
 [domain]
@@ -80,7 +70,7 @@ TEST_P(LoadOrder, ChangesNoBitOfADesign) {
     const std::string folder = scratch / name;
     const Ended ended = run(scratch, scratch.write(name + ".toml", text), folder, changes);
     EXPECT_TRUE(is_done(ended, folder)) << ended.err;
-    return bytes_of(folder + "/components.csv");
+    return contents_of(folder + "/components.csv");
   };
   const std::string first = components("first", bracket({0, 1, 2}, false, 1));
   EXPECT_EQ(components("permuted_four_times", bracket({2, 0, 1}, true, 4)), first);
