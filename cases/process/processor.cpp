@@ -5,21 +5,12 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "cases/process/environment.h"
 #include "cases/process/mpi_at_load.h"
 #include "geometry/base.h"
 #include "geometry/vector_limit.h"
 
 namespace flexmorph {
-
-std::string kernel_for_processor() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-    return "SkylakeX";
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "Haswell";
-#endif
-  return "";
-}
 
 namespace {
 
@@ -41,22 +32,7 @@ void limit_vectors() {
 void set_up_processor(int threads, char** argv) {
   limit_vectors();
   keep_mpi_off_at_load();
-  const char* mark = "FLEXMORPH_THREADS";  // set by the first execution of the process
-  const std::string n = std::to_string(threads);
-  const char* seen = std::getenv(mark);
-  if (seen && n == seen) return;
-  setenv(mark, n.c_str(), 1);
-  setenv("OMP_THREAD_LIMIT", n.c_str(), 1);
-  setenv("OMP_NUM_THREADS", n.c_str(), 1);
-  setenv("OMP_WAIT_POLICY", "passive", 0);  // motions have no work for a second thread
-  setenv("OPENBLAS_NUM_THREADS", "1", 1);
-  if (const std::string kernel = kernel_for_processor(); !kernel.empty())
-    setenv("OPENBLAS_CORETYPE", kernel.c_str(), 0);
-  // Settings for Open MPI, if Ipopt loads it: one process needs no network and no shared memory.
-  setenv("OMPI_MCA_pml", "ob1", 0);
-  setenv("OMPI_MCA_btl", "self", 0);
-  setenv("OMPI_MCA_osc", "rdma", 0);
-  setenv("OMPI_MCA_coll", "basic,self,libnbc,inter,tuned", 0);
+  if (!set_environment(threads)) return;
   execv("/proc/self/exe", argv);  // returns only on failure; the libraries then use their defaults
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 namespace flexmorph {
 
 /// Sets the number of threads and the kernels of the process, for every program of the repository,
@@ -15,18 +13,11 @@ namespace flexmorph {
 /// Open MPI, if Ipopt loads it, neither searches a network nor shares memory.
 ///
 /// OpenMP and OpenBLAS read their environment variables when they are loaded; therefore the process
-/// executes itself a second time with these variables set. OPENBLAS_CORETYPE, OMP_WAIT_POLICY and
-/// OMPI_MCA_* are not changed if they are set already. The function must be called at the beginning
-/// of main(), before any action that must not be repeated.
+/// executes itself a second time with these variables set (set_environment()), unless it was
+/// started with them. The function must be called at the beginning of main(), before any action
+/// that must not be repeated.
 /// @param argv  arguments of main()
 /// @throws Error (input) if FLEXMORPH_VECTORS has another value
 void set_up_processor(int threads, char** argv);
-
-/// Returns the kernels of OpenBLAS for this processor unless OPENBLAS_CORETYPE gives others:
-/// "SkylakeX" (AVX-512), "Haswell" (AVX2 with FMA), or an empty text, which leaves the choice to
-/// the library. The choice of the library is avoided where possible: version 0.3.21 does not
-/// support newer processors and selects kernels of the year 2004 for them, and its results differ
-/// in the last bits between processors that could use equal kernels.
-std::string kernel_for_processor();
 
 }  // namespace flexmorph

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "io/output_folder.h"
-#include "tests/support/watchdog.h"
+#include "tests/support/watch/watch.h"
 
 namespace flexmorph::testing {
 

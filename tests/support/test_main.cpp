@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "tests/support/watchdog.h"
+#include "tests/support/watch/watchdog.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// Tests whose behaviour the watchdog (tests/support/watchdog.h) must detect; watchdog_test.cmake
+// Tests whose behaviour the watchdog (tests/support/watch/watchdog.h) must detect; watchdog_test.cmake
 // runs each in a separate process.
 
 #include <gtest/gtest.h>

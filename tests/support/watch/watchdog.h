@@ -4,8 +4,9 @@
 
 namespace flexmorph::testing {
 
-/// Runs the tests of a program in a child process, which is a new start of this program, and
-/// watches it. Tests run with one thread and the BLAS kernels of the processor
+/// Runs the tests of a program and watches them: in this process if the program `watched` started
+/// it, as ctest does (watched.cpp), else in a child process, which is a new start of this program.
+/// Tests run with one thread and the BLAS kernels of the processor
 /// (cases/process/processor.h).
 ///
 /// A test that exceeds its time limit is named and killed, together with every process that it
@@ -19,16 +20,8 @@ namespace flexmorph::testing {
 /// for debuggers.
 ///
 /// @param argv  arguments of main(), for the new start
-/// @param run_tests  initializes GoogleTest, runs the tests, returns the exit code (in the child)
-/// @returns the exit code of the child process; 1 if it exceeded the limit or left a process behind
+/// @param run_tests  initializes GoogleTest, runs the tests, returns the exit code
+/// @returns the exit code of the tests; 1 if it exceeded the limit or left a process behind
 int run_watched(char** argv, const std::function<int()>& run_tests);
-
-/// Kills every process that descends from this one and waits up to 10 s for their ends. A process
-/// whose parent was killed becomes a child of this process (PR_SET_CHILD_SUBREAPER), so that none
-/// is missed.
-void kill_descendants();
-
-/// Time limit of one test if FLEXMORPH_TEST_SECONDS is not set [s].
-inline constexpr int kDefaultTestSeconds = 300;
 
 }  // namespace flexmorph::testing
