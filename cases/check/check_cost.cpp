@@ -37,12 +37,13 @@ double points_of(const Body& body) {
 // point of a frame, per cell of a design and iteration; seconds of the start, plots and the report.
 constexpr double kMotionRate = 5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
                  kPointSeconds = 2e-7;
+// Time of a motion on cells with its adjoint computation, divided by the time of the motion.
+constexpr double kGradient = 3;
 constexpr double kCellSeconds = 1.5e-6, kStart = 0.1;
 // Seconds per component: of the exact outline that constraints of widths need in an iteration, and
 // of a crisp design. Seconds per cell of a frame of a design. Seconds of the verification of an
 // outline: constant, per component, and per component and load.
 constexpr double kOutlineSeconds = 2.2e-3, kCrispSeconds = 6e-3, kFrameCellSeconds = 1e-6,
-
                  kVerifiedSeconds = 0.3, kVerifiedComponent = 0.02, kVerifiedLoad = 2e-4;
 
 }  // namespace
@@ -92,8 +93,10 @@ double design_operations(const Scene& scene, const BodyDesign& d) {
 }
 
 /// Returns the CPU time of one motion on the cells of the designs [s].
-double cells_seconds(const Scene& scene, double steps) {
-  const Scene cells = on_cells(scene, scene.verify->cells);
+/// @param parts  elements per cell of the designs in each direction
+/// @param cell   size of the elements if they are larger than the cells [m]; 0: not larger
+double cells_seconds(const Scene& scene, double steps, int parts, double cell = 0) {
+  const Scene cells = on_cells(scene, parts);
   double step = 0;
   for (const BodyDesign& d : cells.designs) {
     const Body& body = cells.body(d.body);
@@ -101,13 +104,34 @@ double cells_seconds(const Scene& scene, double steps) {
         body.row->make(body, cells.time.end,
                        {1, 1});  // one element only; its operations do not depend on the mesh
     const ElementOperations each = body.row->operations(body, *one);
-    const double along = 0.5 * (body.length + body.longest(cells.time.end)) / body.cell,
-                 across = body.elements[1], band = (std::min(along, across) + 2) * body.dim(),
+    const double larger = std::max(1.0, cell / body.cell),
+                 along = 0.5 * (body.length + body.longest(cells.time.end)) / (larger * body.cell),
+                 across = body.elements[1] / larger,
+                 band = (std::min(along, across) + 2) * body.dim(),
                  tangents = body.flow ? kTangentsOfFlow : kTangents;
     step += along * across * (kForces * each.force + tangents * each.tangent);
     step += along * across * body.dim() * band * (tangents * kFactor * band + 4 * kSolutions);
   }
   return steps * step / kMotionRate;
+}
+
+/// Returns the CPU time of one motion on cells with its adjoint computation [s].
+/// @param cell  size of the cells [m]; 0: cells of the designs
+/// @param step  time step [s]; 0: step of the scene
+double gradient_seconds(const Scene& scene, double cell, double step) {
+  const double given = estimate_resources(scene).steps;
+  return kGradient * cells_seconds(scene, step > 0 ? scene.time.end / step : given, 1, cell);
+}
+
+/// Returns the CPU time of all permitted corrected cycles [s].
+double correction_seconds(const Scene& scene) {
+  const mmc::CorrectionSettings& c = scene.cycle.correction;
+  const double motions =
+      (c.max_cycles + 1) * gradient_seconds(scene, scene.cycle.cell, scene.cycle.step);
+  if (c.kind == mmc::Correction::direct) return motions;
+  double iteration = 0;
+  for (const IterationCost& of : iteration_costs(scene)) iteration += of.with_widths;
+  return motions + c.max_cycles * c.inner_iterations * iteration;
 }
 
 /// Returns the CPU time of all permitted iterations of the designs in one cycle [s].
@@ -170,10 +194,15 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
   if (scene.domain) return {design, outlines};
 
   const bool on_cells = scene.verifies_on_cells();
-  const double finer = !scene.verify        ? 0
-                       : on_cells           ? cells_seconds(scene, resources.steps)
-                       : scene.verify->mesh ? 4 * motion
-                                            : std::pow(scene.verify->refine, 2) * motion;
+  double finer = 0;  // of a motion on the mesh of the verification
+  if (scene.verify) {
+    const bool adaptive = scene.time.tolerance && scene.verify->step == scene.time.step;
+    const double steps = adaptive ? resources.steps : scene.time.end / scene.verify->step;
+    finer = on_cells ? cells_seconds(scene, steps, scene.verify->cells)
+            : scene.verify->mesh
+                ? 4 * motion * steps / resources.steps
+                : std::pow(scene.verify->refine, 2) * motion * steps / resources.steps;
+  }
   const int cycles = scene.optimizer.max_iterations > 0 ? scene.cycle.max_cycles : 1;
   std::vector<PhaseCost> out;
   for (int cycle = 1; cycle <= cycles; ++cycle) {
@@ -183,6 +212,9 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
     if (on_cells && cycles > 1)
       out.push_back({.name = "motion on cells", .cycle = cycle, .seconds = finer});
   }
+  if (scene.cycle.correction.kind != mmc::Correction::none)
+    out.push_back(
+        {.name = "corrected cycles", .seconds = correction_seconds(scene), .may_end_early = true});
   out.push_back(outlines);
   const auto add = [&](const char* name, double seconds) {
     out.push_back({.name = name, .seconds = seconds, .group = 1});
@@ -191,6 +223,9 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
   add("motion with uniform material", motion);
   if (scene.verify) add("verification with uniform material", finer);
   if (scene.verify && !(on_cells && cycles > 1)) add("verification with the design", finer);
+  if (scene.certify)
+    out.push_back({.name = "certificate",
+                   .seconds = gradient_seconds(scene, scene.certify->cell, scene.certify->step)});
   return out;
 }
 

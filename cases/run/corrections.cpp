@@ -181,6 +181,10 @@ class Correcting {
       design_.corrections.push_back(cycle);
       if (run_.folder) run_.folder->write_cycles(design_.verdicts, design_.corrections);
       run_.progress.say(corrected_text(cycle));
+      const int most = scene.cycle.correction.max_cycles;
+      run_.progress.way("corrected cycles", (cycle.cycle + 1.0) / (most + 1.0),
+                        "cycle " + std::to_string(cycle.cycle) + " of at most " +
+                            std::to_string(most));
       return run_.keep_running();
     };
     mmc::correct_designs(problems, loads_at, motion, scene.cycle.correction, see);
