@@ -16,13 +16,18 @@ std::string frequency_text(const fem::NaturalMode& mode) {
 
 std::string damping_text(const fem::NaturalMode& mode) {
   if (mode.is_rigid()) return "";
-  const double ratio = mode.damping_ratio();
-  return std::abs(ratio) < 1e-6 ? "0" : formatted("%.3g", ratio);
+  return formatted("%.3g", damping_of(mode));
 }
 
 std::string modes_text(int n) { return std::to_string(n) + (n == 1 ? " mode" : " modes"); }
 
 }  // namespace
+
+double damping_of(const fem::NaturalMode& mode) {
+  constexpr double kRoundOff = 1e-6;  // of the computed eigenvalues
+  const double ratio = mode.damping_ratio();
+  return std::abs(ratio) < kRoundOff ? 0 : ratio;
+}
 
 ModeTable mode_table(const Scene& scene, double time, OperatingPoint& point, int count) {
   ModeTable out;

@@ -20,6 +20,9 @@ struct ModeTable {
 /// @param count  largest number of modes, rigid ones included
 ModeTable mode_table(const Scene& scene, double time, OperatingPoint& point, int count);
 
+/// Returns the damping ratio of a mode; 0 if it is not larger than the error of the eigenvalues.
+double damping_of(const fem::NaturalMode& mode);
+
 /// Returns the share of kinetic energy of the bodies that move most, such as "arm 93 %, rod 7 %".
 /// @param most  largest number of bodies
 std::string moving_bodies(const ModeTable& table, const fem::NaturalMode& mode, size_t most);

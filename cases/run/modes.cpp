@@ -122,7 +122,7 @@ void write_csv(const ModeTable& table, RunFolder& folder) {
   io::CsvWriter csv(folder.file("modes.csv"), columns);
   for (size_t k = 0; k < table.found.modes.size(); ++k) {
     const fem::NaturalMode& mode = table.found.modes[k];
-    std::vector<io::Cell> row = {static_cast<int>(k) + 1, mode.frequency(), mode.damping_ratio(),
+    std::vector<io::Cell> row = {static_cast<int>(k) + 1, mode.frequency(), damping_of(mode),
                                  mode.eigenvalue.real(), mode.eigenvalue.imag()};
     for (const double share : mode.kinetic_share) row.emplace_back(share);
     csv.row(row);
@@ -143,7 +143,7 @@ void write_json(const Scene& scene, const ModeTable& table, RunFolder& folder) {
   for (const fem::NaturalMode& mode : table.found.modes) {
     nlohmann::ordered_json each;
     each["frequency"] = mode.frequency();
-    each["damping_ratio"] = mode.damping_ratio();
+    each["damping_ratio"] = damping_of(mode);
     each["eigenvalue"] = {mode.eigenvalue.real(), mode.eigenvalue.imag()};
     for (size_t b = 0; b < table.bodies.size(); ++b)
       each["kinetic_share"][table.bodies[b]] = mode.kinetic_share[b];
@@ -174,7 +174,9 @@ std::string modes_of_case(const ModesOptions& options) {
   OperatingPoint point = operating_point(prepared, options.time, options.stopped);
   const ModeTable table = mode_table(scene, options.time, point, options.count);
   const std::string directory = directory_of(options, scene);
-  RunFolder folder(directory, scene);
+  Scene undesigned = scene;  // the folder has no history of a design
+  undesigned.designs.clear();
+  RunFolder folder(directory, undesigned);
   keep_case(file, false, folder);
   write_csv(table, folder);
   const std::string at = scene.statics ? "load factor " + io::to_text(options.time)
