@@ -17,7 +17,9 @@ std::vector<NodeVectors> Element::edge(const std::string& name) const {
 }
 
 void Element::tabulate_eulerian(int e, int degree, Tabulate what, EulerianTable& out) const {
-  if (!eulerian_lines()) throw Error::input("this element does not support free material lines");
+  if (!eulerian_lines())
+    throw Error::input("element " + std::to_string(e + 1) +
+                       ": a body with this kind of elements has no free material lines");
   eulerian_lines()->tabulate_eulerian(e, degree, what, out);
 }
 

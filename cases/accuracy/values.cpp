@@ -103,23 +103,25 @@ double design_value(const nlohmann::json& run, const std::string& name) {
 
 Part part_of(const PreparedCase& prepared, const Interest& interest) {
   const Scene& scene = prepared.scene();
-  const std::string what = "accuracy.quantity = \"" + interest.name + "\": ";
   for (const Part part : parts_of(scene)) {
     const bool known = holds(candidates(prepared, part), interest.name) ||
                        (part == Part::motion && is_of_run(scene, interest.name));
     if (!known) continue;
     if (interest.at != Interest::At::end &&
         (part == Part::design || is_of_run(scene, interest.name)))
-      throw Error::input(what + "this quantity is one number per run; `at` is only for columns");
+      scene.refuse("accuracy.at", "the quantity \"" + interest.name +
+                                      "\" is one number per run; `at` is only for columns");
     const double end = scene.statics ? scene.statics->to : scene.time.end;
     if (interest.at == Interest::At::time && interest.time > end * (1 + 1e-9))
-      throw Error::input(what + "at = " + io::to_text(interest.time) +
-                         " is after the end of the run, " + io::to_text(end));
+      scene.refuse("accuracy.at", "the time " + io::to_text(interest.time) + " of \"" +
+                                      interest.name + "\" is after the end of the run, " +
+                                      io::to_text(end));
     return part;
   }
-  throw Error::input(what + "this case has no quantity with this name; possible quantities: " +
-                     all_candidates(prepared) +
-                     ", and numbers of run.json such as motion.constraint_drift");
+  scene.refuse(
+      "accuracy.quantity",
+      "\"" + interest.name + "\": this case has no quantity with this name; possible quantities: " +
+          all_candidates(prepared) + ", and numbers of run.json such as motion.constraint_drift");
 }
 
 double value_at(const std::vector<double>& x, const std::vector<double>& y,

@@ -10,6 +10,11 @@ constexpr double kSpeedAtRest = 1e-6;  // [m/s]
 /// Largest time after the start at which fem::start_state() uses the rigid motion [s].
 constexpr double kTimeIncrement = 2e-4;
 
+std::string counted(int degrees_of_freedom) {
+  return std::to_string(degrees_of_freedom) +
+         (degrees_of_freedom == 1 ? " degree of freedom" : " degrees of freedom");
+}
+
 /// Returns the start of a mechanism with start = "steady": in equilibrium under the inertia forces
 /// of the motion that drives determine (rigid if plates must bend to follow the drives), or in
 /// equilibrium at rest if nothing moves.
@@ -26,9 +31,8 @@ fem::Start steady_start(const Scene& scene, fem::RigidMotion& rigid) {
             "than its degrees of freedom; set start = \"rigid\""
           : "\"steady\" needs drives that determine the whole motion, or a mechanism at "
             "rest; the drives leave " +
-                std::to_string(rigid.degrees_of_freedom()) +
-                " degrees of freedom undetermined, and the mechanism starts with a "
-                "velocity of " +
+                counted(rigid.degrees_of_freedom()) +
+                " undetermined, and the mechanism starts with a velocity of " +
                 io::to_text(rigid.start_speed(), 3) + " m/s; set start = \"rigid\"");
 }
 
@@ -39,9 +43,9 @@ fem::Start prestretched_start(const Scene& scene, fem::RigidMotion& rigid) {
   if (rigid.degrees_of_freedom() == 0)
     return rigid.reaches(kTimeIncrement) ? fem::Start::prestretched : fem::Start::rigid;
   if (rigid.is_indeterminate())
-    throw Error::input(
-        "time.start: \"prestretched\" needs a motion of the rigid mechanism, but its joints "
-        "constrain more than its degrees of freedom; set start = \"rigid\"");
+    scene.refuse("time.start",
+                 "\"prestretched\" needs a motion of the rigid mechanism, but its joints constrain "
+                 "more than its degrees of freedom; set start = \"rigid\"");
   // With a larger acceleration, the mechanism begins to swing. A smaller one vanishes in the
   // equilibrium of the plates.
   const double nearly = 0.05 * std::max(1.0, scene.gravity ? scene.gravity->norm() : 0.0);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/text.h"
+
 namespace flexmorph::fem {
 namespace {
 
@@ -26,7 +28,10 @@ Row6 shapes_y(double xi) { return {0, 0, 1 - xi, 0, 0, xi}; }
 std::vector<double> uniform_nodes(double length, int n_elements) {
   if (!(length > 0) || !std::isfinite(length) || n_elements < 1)
     throw Error::input(
-        "ancf_beam: the length must be positive [m], and there must be at least one element");
+        formatted("ancf_beam: length = %g m and number of elements = %d: the length is positive, "
+                  "and there is "
+                  "at least one element",
+                  length, n_elements));
   std::vector<double> x;
   for (int i = 0; i <= n_elements; ++i) x.push_back(length * i / n_elements);
   return x;
@@ -39,7 +44,9 @@ std::vector<BeamNode> curve_reference(const std::function<CentreLine(double)>& c
     const CentreLine c = curve(at);
     const double length = c.tangent.norm();
     if (!(length > 0))
-      throw Error::input("ancf_beam: the tangent of the centre line has the length 0");
+      throw Error::input(formatted(
+          "ancf_beam: the tangent of the centre line at x = %g m has the length %g; it is positive",
+          at, length));
     const Vec2 normal = Vec2(-c.tangent.y(), c.tangent.x()) / length;
     out.push_back({c.point, c.tangent, c.height_ratio * normal});
   }
@@ -71,11 +78,16 @@ AncfBeam::AncfBeam(std::vector<double> x, double height, std::vector<BeamNode> r
       height_(height),
       straight_(reference.empty()) {
   if (!(height > 0) || !std::isfinite(height))
-    throw Error::input("ancf_beam: the height must be positive [m]");
-  if (x_.size() < 2) throw Error::input("ancf_beam: there must be at least two nodes");
+    throw Error::input(formatted("ancf_beam: height = %g m: a height is positive", height));
+  if (x_.size() < 2)
+    throw Error::input("ancf_beam: a beam has at least two nodes, not " +
+                       std::to_string(x_.size()));
   for (size_t i = 0; i < x_.size(); ++i)
     if (!std::isfinite(x_[i]) || (i > 0 && !(x_[i] > x_[i - 1])))
-      throw Error::input("ancf_beam: the coordinates of the nodes must increase along the beam");
+      throw Error::input(
+          formatted("ancf_beam: node %zu is at x = %g m: the coordinates of the nodes are finite "
+                    "and increase along the beam",
+                    i + 1, x_[i]));
   if (straight_)
     for (const double at : x_) reference.push_back({Vec2(at, 0), Vec2(1, 0), Vec2(0, 1)});
   if (reference.size() != x_.size())

@@ -205,7 +205,9 @@ std::unique_ptr<Term> make_heated(BodyTerm cold, const Heat& heat) {
                        "' is not elastic");
   if (!heat.temperature) throw Error::input("heat: the temperature is missing");
   if (!std::isfinite(heat.expansion))
-    throw Error::input("the coefficient of thermal expansion is not a finite number");
+    throw Error::input(
+        formatted("heat: the coefficient of thermal expansion is %g 1/K; it is a finite number",
+                  heat.expansion));
   return std::make_unique<Heated>(std::move(cold), heat);
 }
 

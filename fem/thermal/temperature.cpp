@@ -22,9 +22,12 @@ const std::map<std::string, Profile>& table() {
 
 void check(const TemperatureRise& r) {
   if (!std::isfinite(r.rise) || !std::isfinite(r.start) || !std::isfinite(r.duration))
-    throw Error::input("temperature: rise, start and duration must be finite numbers");
+    throw Error::input(formatted(
+        "temperature: rise = %g K, start = %g s, duration = %g s: these are finite numbers", r.rise,
+        r.start, r.duration));
   if (r.profile != Profile::step && !(r.duration > 0))
-    throw Error::input("temperature: the settling time must be positive");
+    throw Error::input(
+        formatted("temperature: duration = %g s: the settling time is positive", r.duration));
 }
 
 /// Returns the end of the rise; all callers get the identical double.

@@ -285,7 +285,7 @@ std::string one_of(const std::string& noun, std::span<const std::string> allowed
 
 std::string one_of(const std::string& noun, std::span<const std::string> allowed,
                    const std::string& found) {
-  const std::string close = nearest(found, allowed);
+  const std::string close = allowed.size() > 1 ? nearest(found, allowed) : "";
   return one_of(noun, allowed) + (close.empty() ? "" : ", did you mean '" + close + "'?");
 }
 

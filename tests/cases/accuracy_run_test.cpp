@@ -107,8 +107,8 @@ TEST(Accuracy, RefusesWhatItCannotMeasure) {
   // The message lists the quantities that exist.
   fails({"--set", "accuracy="}, {"strip.toml", "[accuracy]", "strip.tip_uz"});
   fails({"--set", "accuracy.quantity=compliance"},
-        {"accuracy.quantity = \"compliance\"", "strip.tip_uz"});
-  fails({"--set", "accuracy.at=2"}, {"accuracy.quantity = \"strip.tip_uz\"", "at = 2", "end", "1"});
+        {"accuracy.quantity=compliance", "\"compliance\"", "strip.tip_uz"});
+  fails({"--set", "accuracy.at=2"}, {"accuracy.at=2", "\"strip.tip_uz\"", "end", "1"});
   fails({"--set", "accuracy.refinements=[\"mesh\"]"},
         {"strip.toml:", "accuracy.refinements", "'mesh'", "elements, shape"});
   fails({"--set", "accuracy.reference={ value = 1, file = \"x.csv\", source = \"\" }"},

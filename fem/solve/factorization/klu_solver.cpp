@@ -43,7 +43,10 @@ int* rows(const SparseMatrix& a) { return const_cast<int*>(a.innerIndexPtr()); }
 double* values(const SparseMatrix& a) { return const_cast<double*>(a.valuePtr()); }
 
 [[noreturn]] void fail(int status) {
-  if (status == KLU_SINGULAR) throw Error::numerical("KLU: the matrix is singular");
+  if (status == KLU_SINGULAR)
+    throw Error::numerical(
+        "KLU: the matrix is singular; a body may be insufficiently fixed, or a constraint may be "
+        "redundant");
   throw Error::numerical("KLU failed with status " + std::to_string(status));
 }
 

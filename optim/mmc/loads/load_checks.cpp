@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/text.h"
+
 namespace flexmorph::mmc {
 namespace {
 
@@ -58,12 +60,15 @@ void refuse(const LoadCase& load, const std::string& what) {
 }
 
 void check_load(const LoadCase& load, const Grid& grid) {
-  if (!(load.weight > 0) || !std::isfinite(load.weight)) refuse(load, "a weight is positive");
+  if (!(load.weight > 0) || !std::isfinite(load.weight))
+    refuse(load, formatted("weight = %g: a weight is positive", load.weight));
   for (const fem::NodalForce& f : load.forces)
     if (f.node < 0 || f.node >= grid.n_nodes() || !f.force.allFinite())
-      refuse(load, "a force is not finite, or its node does not exist");
+      refuse(load, formatted("force (%g, %g) N at node %d: forces are finite, and nodes are 0 "
+                             "to %d",
+                             f.force.x(), f.force.y(), f.node, grid.n_nodes() - 1));
   if (!(load.thermal_stretch > -1) || !std::isfinite(load.thermal_stretch))
-    refuse(load, "a thermal stretch is a number above -1");
+    refuse(load, formatted("thermal stretch = %g: it is above -1", load.thermal_stretch));
 }
 
 void check_loads(const fem::EslSets& loads, const ComplianceSettings& settings,

@@ -42,7 +42,7 @@ const Tried kTyped[] = {
      "body = \"plate\"\nat",
      "body = \"palte\"\nat",
      ":36:8",
-     {"point_mass.body", "'plate'", "'plate'"}},
+     {"point_mass.body", "'plate'"}},
     {"capital", "[time]", "[Time]", ":5:1", {"[Time]", "'time'"}},
     {"comma_for_point", "width = 0.1", "width = 0,1", ":18:10", {"`width = 0,1`", "comma"}},
     {"unit_behind",
