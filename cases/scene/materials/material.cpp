@@ -28,7 +28,7 @@ const Material kMaterials[] = {
      "pure: matmake.com, after Cardarelli, Materials Handbook"},
     {"copper", 8920, 130e9, 0.343, 16.8e-6,
      "Dowling, Mechanical Behavior of Materials, table 5.2; density and expansion: Copper "
-     "Development Association, Introduction to Copper (2001), table 5"},
+     "Development Association, Introduction to Copper, table 5"},
     {"brass", 8530, 101e9, 0.35, 19.9e-6,
      "70Cu-30Zn: Dowling, Mechanical Behavior of Materials, table 5.2; density and expansion: "
      "data sheets of C26000"},
