@@ -13,6 +13,25 @@ file(GLOB flexmorph_shipped CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cases/*.toml
                                               ${PROJECT_SOURCE_DIR}/cases/*.csv)
 install(FILES ${flexmorph_shipped} DESTINATION share/flexmorph/cases COMPONENT program)
 
+# Manual pages and completion of shells, printed by the program.
+set(shell ${PROJECT_BINARY_DIR}/shell)
+file(MAKE_DIRECTORY ${shell})
+set(script "\"$1\" manual 1 | gzip -9n >flexmorph.1.gz && \"$1\" manual 5 | gzip -9n >flexmorph.5.gz && \
+\"$1\" completion bash >flexmorph && \"$1\" completion zsh >_flexmorph")
+add_custom_command(
+  OUTPUT ${shell}/flexmorph.1.gz ${shell}/flexmorph.5.gz ${shell}/flexmorph ${shell}/_flexmorph
+  COMMAND sh -ec "${script}" sh $<TARGET_FILE:flexmorph>
+  DEPENDS flexmorph
+  WORKING_DIRECTORY ${shell}
+  COMMENT "Printing manual pages and completion" VERBATIM)
+add_custom_target(flexmorph_shell ALL DEPENDS ${shell}/flexmorph.1.gz)
+foreach(section 1 5)
+  install(FILES ${shell}/flexmorph.${section}.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section}
+          COMPONENT program)
+endforeach()
+install(FILES ${shell}/flexmorph DESTINATION share/bash-completion/completions COMPONENT program)
+install(FILES ${shell}/_flexmorph DESTINATION share/zsh/vendor-completions COMPONENT program)
+
 set(flexmorph_static geometry io fem thermal optim verification mmc cases)
 foreach(library options ${flexmorph_static})
   set_target_properties(flexmorph_${library} PROPERTIES EXPORT_NAME ${library})

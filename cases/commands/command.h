@@ -61,7 +61,9 @@ void add_case(CLI::App& command, std::string& name, std::vector<std::string>& ov
 std::vector<Command> commands_of_runs(CLI::App& app);
 /// Returns the commands that compute many cases: compare, sweep, accuracy, stability.
 std::vector<Command> commands_of_studies(CLI::App& app);
-/// Returns the commands that print texts: cases, keys, completion.
+/// Returns the command that prints manual pages.
+Command manual_command(CLI::App& app);
+/// Returns the commands that print texts: cases, keys, completion, manual.
 std::vector<Command> commands_of_texts(CLI::App& app);
 
 }  // namespace flexmorph::cases

@@ -88,7 +88,7 @@ Command completion_command(CLI::App& app) {
 }  // namespace
 
 std::vector<Command> commands_of_texts(CLI::App& app) {
-  return {cases_command(app), keys_command(app), completion_command(app)};
+  return {cases_command(app), keys_command(app), completion_command(app), manual_command(app)};
 }
 
 }  // namespace flexmorph::cases

@@ -1,0 +1,11 @@
+#!/bin/sh
+# cases/cmake/packages.sh [FOLDER] : builds Flexmorph in FOLDER (default build-packages) and makes
+# its Debian packages there. Compiling needs the packages that cases/run.sh installs.
+set -eu
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=${1-$root/build-packages}
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DFLEXMORPH_TESTS=OFF \
+  -DCMAKE_INSTALL_PREFIX=/usr
+cmake --build "$build"
+(cd "$build" && cpack)
+ls -l "$build"/*.deb
