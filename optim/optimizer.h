@@ -109,7 +109,7 @@ struct OptimizerRow {
 
   /// Makes an optimizer with these settings.
   /// @throws Error (input) for options that the optimizer does not have, see with_defaults().
-  std::unique_ptr<Optimizer> (*make)(const Settings& settings);
+  std::function<std::unique_ptr<Optimizer>(const Settings& settings)> make;
 };
 /// Adds a row to the table of optimizers, see Registry::add().
 void register_optimizer(const OptimizerRow& row);

@@ -11,7 +11,7 @@
 namespace flexmorph::optim {
 namespace {
 
-constexpr OptimizerRow kMma{"mma", make_mma}, kGcmma{"gcmma", make_mma},
+const OptimizerRow kMma{"mma", make_mma}, kGcmma{"gcmma", make_mma},
     kNloptMma{"nlopt_mma", make_nlopt}, kNloptCcsaq{"nlopt_ccsaq", make_nlopt},
     kIpopt{"ipopt", make_ipopt};
 

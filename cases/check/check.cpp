@@ -1,3 +1,5 @@
+#include "cases/check/check.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -326,8 +328,11 @@ void describe_absent(const Scene& scene, std::ostringstream& out) {
 
 std::string check_case(const std::string& name, std::span<const std::string> overrides,
                        bool explain) {
-  const auto [file, prepared] = ready_case(name, overrides);
-  if (explain) return file.explained();
+  const ReadyCase ready = ready_case(name, overrides);
+  return explain ? ready.file.explained() : check_text(ready.prepared);
+}
+
+std::string check_text(const PreparedCase& prepared) {
   const Scene& scene = prepared.scene();
   const Machine machine = this_machine(scene.output.directory);
   std::ostringstream out;

@@ -3,6 +3,8 @@
 #include <span>
 #include <string>
 
+#include "cases/assembly/prepared_case.h"
+
 namespace flexmorph::cases {
 
 /// Returns a text about a case: its contents, the features that it does not use, and the cost of
@@ -13,5 +15,8 @@ namespace flexmorph::cases {
 /// @throws Error (input) when the case cannot be used
 std::string check_case(const std::string& name, std::span<const std::string> overrides,
                        bool explain);
+/// Returns a text about a case that was built: its contents, the features that it does not use, and
+/// the cost of its items.
+std::string check_text(const PreparedCase& prepared);
 
 }  // namespace flexmorph::cases

@@ -33,12 +33,16 @@ fs::path own_file(const void* function) {
 }
 
 /// Returns the folder of the shipped cases. For an installed program or shared library it is
-/// share/flexmorph/cases beside its folder bin/, lib/ or lib/ARCHITECTURE/, even if the
+/// share/flexmorph/cases beside its folder bin/, lib/ or lib/ARCHITECTURE/, and
+/// for the Python package beside lib/, even if the
 /// installation was moved; otherwise it is in the source tree.
 fs::path cases_folder() {
   std::error_code none;
   const fs::path beside = own_file(reinterpret_cast<const void*>(&cases_folder)).parent_path();
-  for (const fs::path& prefix : {beside.parent_path(), beside.parent_path().parent_path()}) {
+  std::vector<fs::path> prefixes{beside.parent_path(), beside.parent_path().parent_path()};
+  if (beside.parent_path().filename() == "dist-packages")  // PREFIX/lib/pythonX.Y/dist-packages
+    prefixes.push_back(beside.parent_path().parent_path().parent_path().parent_path());
+  for (const fs::path& prefix : prefixes) {
     const fs::path installed = prefix / "share/flexmorph/cases";
     if (!beside.empty() && fs::is_directory(installed, none)) return installed;
   }
@@ -155,10 +159,14 @@ void require_buildable(const PreparedCase& prepared, const std::string& director
 
 ReadyCase ready_case(const std::string& name, std::span<const std::string> overrides,
                      const std::string& directory) {
-  io::CaseFile file(find_case(name), overrides);
+  return ready_case(io::CaseFile(find_case(name), overrides), overrides, directory);
+}
+
+ReadyCase ready_case(io::CaseFile file, std::span<const std::string> overrides,
+                     const std::string& directory) {
   PreparedCase prepared(read_scene(file));
   require_buildable(prepared, directory);
-  return {std::move(file), std::move(prepared)};
+  return {std::move(file), std::move(prepared), {overrides.begin(), overrides.end()}};
 }
 
 std::string title_of_case(const std::string& name) {

@@ -17,6 +17,9 @@ inline constexpr int kMaxBuiltCells = 200'000;
 struct ReadyCase {
   io::CaseFile file;      ///< Case file with the overrides.
   PreparedCase prepared;  ///< Scene, with the models built from it.
+
+  /// Overrides of keys of the case, "KEY=VALUE".
+  std::vector<std::string> overrides = {};
 };
 /// Reads a case and builds its model, its design problems and its loads, as a run does first.
 /// @param name       path, or name of a shipped case
@@ -24,6 +27,13 @@ struct ReadyCase {
 /// @param directory  run folder, on whose disk the results must fit; empty: as the case says
 /// @throws Error naming the file, and line and column where they are known.
 ReadyCase ready_case(const std::string& name, std::span<const std::string> overrides,
+                     const std::string& directory = "");
+
+/// Builds the model, the design problems and the loads of a case that was read.
+/// @param overrides  overrides with which the file was read, KEY=VALUE
+/// @param directory  run folder, on whose disk the results must fit; empty: as the case says
+/// @throws Error naming the file, and line and column where they are known.
+ReadyCase ready_case(io::CaseFile file, std::span<const std::string> overrides,
                      const std::string& directory = "");
 
 /// Returns the path of a case file: the path itself, or the path of the shipped case of this name.

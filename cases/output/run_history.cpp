@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "cases/output/run_folder.h"
+#include "cases/results/schema.h"
 #include "cases/scene/design/goal.h"
 #include "geometry/cpu_time.h"
 #include "io/files.h"
@@ -15,28 +16,22 @@
 namespace flexmorph::cases {
 namespace {
 
-const std::vector<std::string> kHistoryColumns = {"body",
-                                                  "cycle",
-                                                  "iteration",
-                                                  "evaluations",
-                                                  "scaled_objective",
-                                                  "compliance",
-                                                  "volume",
-                                                  "violation",
-                                                  "kkt",
-                                                  "change",
-                                                  "band",
-                                                  "crisp_compliance",
-                                                  "crisp_volume",
-                                                  "connected",
-                                                  "min_feature"};
-/// Last columns; the responses of further_rows() are between kHistoryColumns and these columns.
+/// Returns the names of the first columns of the history.
+const std::vector<std::string>& history_columns() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const auto& quantity : iteration_quantities()) out.emplace_back(quantity.name);
+    return out;
+  }();
+  return names;
+}
+/// Last columns; the responses of further_rows() are between history_columns() and these columns.
 const std::vector<std::string> kHistorySeconds = {
     "seconds_tdf",         "seconds_outlines",  "seconds_factor", "seconds_solve",
     "seconds_sensitivity", "seconds_optimizer", "seconds_output"};
 
 std::vector<std::string> columns_of(const Scene& scene) {
-  std::vector<std::string> out = kHistoryColumns;
+  std::vector<std::string> out = history_columns();
   for (const mmc::ResponseRow* row : further_rows(scene)) out.push_back(mmc::key_of(*row));
   out.insert(out.end(), kHistorySeconds.begin(), kHistorySeconds.end());
   return out;
@@ -122,8 +117,9 @@ void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::st
       components_.add(number, names.lines);
     });
   const auto number = [&](const char* name) {
-    const auto at = std::find(kHistoryColumns.begin(), kHistoryColumns.end(), name);
-    return value_of(old[static_cast<size_t>(at - kHistoryColumns.begin())]);
+    const std::vector<std::string>& names = history_columns();
+    const auto at = std::find(names.begin(), names.end(), name);
+    return value_of(old[static_cast<size_t>(at - names.begin())]);
   };
   for (size_t i = 0, first = old.size() - phases_.size(); i < phases_.size(); ++i)
     phases_[i].second += value_of(old[first + i]);
@@ -192,31 +188,9 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
 }
 
 void RunFolder::write_history_row(const mmc::IterationReport& r) {
-  io::Cell crisp_c, crisp_v, connected, min_feature;
-  if (r.crisp) {
-    crisp_c = r.crisp->compliance;
-    crisp_v = r.crisp->volume;
-    connected = r.crisp->connectivity.connected;
-    if (r.crisp->features && std::isfinite(r.crisp->features->solid))
-      min_feature = r.crisp->features->solid;
-  }
+  std::vector<io::Cell> row;
+  for (const auto& quantity : iteration_quantities()) row.emplace_back(text_of(quantity.value(r)));
   const mmc::ComplianceEvaluator::Seconds s = r.state.seconds();
-  const auto number = [](double v) { return std::isfinite(v) ? io::Cell(v) : io::Cell(); };
-  std::vector<io::Cell> row = {r.problem.body,
-                               r.cycle,
-                               r.iteration,
-                               r.evaluations,
-                               r.iterate.response->f,
-                               number(r.state.compliance()),
-                               r.state.volume(),
-                               r.iterate.violation,
-                               r.iterate.kkt,
-                               r.iterate.change,
-                               r.state.band() / r.problem.grid.dx(),
-                               crisp_c,
-                               crisp_v,
-                               connected,
-                               min_feature};
   for (const mmc::ResponseRow* further : further_rows(scene_)) {
     const std::optional<VectorXd> values = r.state.values(*further);
     row.push_back(values ? io::Cell(values->maxCoeff()) : io::Cell());

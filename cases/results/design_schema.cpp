@@ -27,7 +27,61 @@ Value where_verified(const VerifiedOutline& o, const T& value) {
 }
 using Verification = verification::OutlineVerification;
 
+/// Returns a number of the crisp design of an iteration; no value if it was not evaluated.
+template <class T>
+Value where_crisp(const mmc::IterationReport& r, const T& value) {
+  if (r.crisp == nullptr) return {};
+  return value(*r.crisp);
+}
+
 }  // namespace
+
+std::span<const ResultQuantity<mmc::IterationReport>> iteration_quantities() {
+  using R = mmc::IterationReport;
+  static const ResultQuantity<R> kTable[] = {
+      {"body", "", "name of the designed body", [](const R& r) -> Value { return r.problem.body; }},
+      {"cycle", "-", "number of the design cycle, from 1",
+       [](const R& r) -> Value { return r.cycle; }},
+      {"iteration", "-", "number of the iteration in the cycle, from 1",
+       [](const R& r) -> Value { return r.iteration; }},
+      {"evaluations", "-", "number of evaluations in the cycle so far",
+       [](const R& r) -> Value { return r.evaluations; }},
+      {"scaled_objective", "-", "objective as the optimizer scales it, often a logarithm",
+       [](const R& r) -> Value { return r.iterate.response->f; }},
+      {"compliance", "J", "compliance of the regularized design under its loads",
+       [](const R& r) { return optional_number(r.state.compliance()); }},
+      {"volume", "-", "volume fraction of the regularized design",
+       [](const R& r) -> Value { return r.state.volume(); }},
+      {"violation", "-", "largest value of a constraint, at least 0",
+       [](const R& r) -> Value { return r.iterate.violation; }},
+      {"kkt", "-", "KKT residual of the iteration",
+       [](const R& r) -> Value { return r.iterate.kkt; }},
+      {"change", "-", "largest change of a scaled variable in the iteration",
+       [](const R& r) -> Value { return r.iterate.change; }},
+      {"band", "-", "half-width of the band of the Heaviside function in cells",
+       [](const R& r) -> Value { return r.state.band() / r.problem.grid.dx(); }},
+      {"crisp_compliance", "J", "compliance of the crisp design, where it was evaluated",
+       [](const R& r) {
+         return where_crisp(r, [](const mmc::CrispDesign& c) -> Value { return c.compliance; });
+       }},
+      {"crisp_volume", "-", "volume fraction of the crisp design, where it was evaluated",
+       [](const R& r) {
+         return where_crisp(r, [](const mmc::CrispDesign& c) -> Value { return c.volume; });
+       }},
+      {"connected", "", "true if material connects every load to a support, where it was evaluated",
+       [](const R& r) {
+         return where_crisp(
+             r, [](const mmc::CrispDesign& c) -> Value { return c.connectivity.connected; });
+       }},
+      {"min_feature", "m", "smallest width of material of the crisp design, where it was evaluated",
+       [](const R& r) {
+         return where_crisp(r, [](const mmc::CrispDesign& c) {
+           return c.features ? optional_number(c.features->solid) : Value();
+         });
+       }},
+  };
+  return kTable;
+}
 
 std::span<const ResultQuantity<mmc::BodyOutcome>> design_quantities() {
   using O = mmc::BodyOutcome;

@@ -27,6 +27,8 @@ struct ResultQuantity {
 
 /// Returns the numbers of the outcome of a design.
 std::span<const ResultQuantity<mmc::BodyOutcome>> design_quantities();
+/// Returns the values of a design iteration, which are the first columns of history.csv.
+std::span<const ResultQuantity<mmc::IterationReport>> iteration_quantities();
 /// Returns the numbers of the outcome of a design whose widths are limited.
 std::span<const ResultQuantity<mmc::BodyOutcome>> length_scale_quantities();
 /// Returns the numbers of the verification of an outline.

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "cases/assembly/prepared_case.h"
+#include "cases/check/ready.h"
 #include "cases/results/run_result.h"
 
 /// Functions for programs that load and compute cases without a run folder and without output on
@@ -36,6 +36,17 @@ struct ComputeSettings {
 /// complete: it contains the status, the warnings and the compared expectations.
 /// @throws the Error of the run; Interrupted
 RunResult compute(const PreparedCase& prepared, const ComputeSettings& settings = {});
+
+/// Computes a case with the files that the command `run` writes into its run folder. It prints
+/// nothing and installs no handlers of signals.
+/// @param ready      case with its file, which the folder keeps
+/// @param directory  run folder; an earlier run in it is moved as a whole
+/// @param resume     true if a run of the same case in the folder is resumed
+/// @return exit code of the command: 0 for a complete run; 4 if `keep_running` ended it; 5 if it
+///         violates an expectation of the case or is not usable. The results so far are written.
+/// @throws the Error of the run, after it is written into the folder
+int compute_into(const ReadyCase& ready, const std::string& directory,
+                 const ComputeSettings& settings = {}, bool resume = false);
 
 /// Computes a case as compute() does, and returns the results computed before an error together
 /// with the error.

@@ -169,7 +169,8 @@ std::string directory_of(const ModesOptions& options, const Scene& scene) {
 }  // namespace
 
 std::string modes_of_case(const ModesOptions& options) {
-  const auto [file, prepared] = ready_case(options.case_name, options.overrides, options.directory);
+  const auto [file, prepared, overrides] =
+      ready_case(options.case_name, options.overrides, options.directory);
   const Scene& scene = prepared.scene();
   OperatingPoint point = operating_point(prepared, options.time, options.stopped);
   const ModeTable table = mode_table(scene, options.time, point, options.count);

@@ -65,6 +65,7 @@ void Progress::say(const std::string& text) {
 
 void Progress::object(const std::string& kind, const std::string& text) {
   const std::lock_guard guard(lock_);
+  if (told_) return told_(kind + ": " + text);
   end_line();
   const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   const char* const before = !colour ? "" : kind == "warning" ? "\x1b[33m" : "\x1b[31m";

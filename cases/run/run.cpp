@@ -10,6 +10,7 @@
 #include "cases/check/ready.h"
 #include "cases/output/kept_case.h"
 #include "cases/output/paraview_script.h"
+#include "cases/run/compute.h"
 #include "cases/run/design_run.h"
 #include "cases/run/motions.h"
 #include "cases/run/path_run.h"
@@ -117,26 +118,26 @@ EndedRun run_prepared(const RunContext& run) {
   return out;
 }
 
-int run_case(const RunOptions& options) {
-  const RunFiles::Clock::time_point begin = RunFiles::Clock::now();
-  // A case that cannot be built or is too large is refused before a folder is created.
-  const auto [file, prepared] = ready_case(options.case_name, options.overrides, options.directory);
+namespace {
+
+/// Runs a case in its folder and reports to a display.
+/// @param settings  callbacks of the run
+int run_in_folder(const ReadyCase& ready, const std::string& directory, const RunOptions& options,
+                  const ComputeSettings& settings, Progress& progress,
+                  RunFiles::Clock::time_point begin) {
+  const io::CaseFile& file = ready.file;
+  const PreparedCase& prepared = ready.prepared;
   const Scene& scene = prepared.scene();
-  std::string directory = options.directory;
-  if (directory.empty()) directory = scene.output.directory;
-  if (directory.empty()) directory = "runs/" + scene.name;
   if (options.resume)
     if (const std::optional<int> code = finished_with(directory, options, file)) {
       remove_progress_of_finished(directory);
-      std::printf("%s: The run is complete already. Nothing was computed.\n", directory.c_str());
+      progress.say(directory + ": The run is complete already. Nothing was computed.");
       return *code;
     }
   RunFolder folder(directory, scene, options.threads > 1,
                    options.resume ? RunFolder::Begin::keep_running : RunFolder::Begin::anew);
   keep_case(file, options.explain, folder);
   if (scene.output.vtk) folder.write_text("paraview.py", kParaViewScript);
-  end_on_signals();
-  Progress progress(options.quiet);
   progress.plan({phase_costs(scene, scene.domain ? nullptr : &prepared.mechanism()),
                  iteration_costs(scene), options.threads});
   progress.say(scene.title + ": The results are written to " + directory);
@@ -147,9 +148,45 @@ int run_case(const RunOptions& options) {
     progress.say("The earlier run in this folder was moved to " + folder.moved_to());
   RunFiles files(scene, folder, options.threads, begin);
   files.write({}, "running", "");
-  EndedRun ended = run_prepared({prepared, &folder, progress, keeps_running, options.threads,
-                                 options.condition, options.resume});
+  EndedRun ended = run_prepared({.prepared = prepared,
+                                 .folder = &folder,
+                                 .progress = progress,
+                                 .keep_running = settings.keep_running,
+                                 .threads = options.threads,
+                                 .condition = options.condition,
+                                 .resume = options.resume,
+                                 .iteration = settings.iteration});
   return end_run(std::move(ended), !is_another_case(options.overrides), files, progress);
+}
+
+}  // namespace
+
+int run_case(const RunOptions& options) {
+  const RunFiles::Clock::time_point begin = RunFiles::Clock::now();
+  // A case that cannot be built or is too large is refused before a folder is created.
+  const ReadyCase ready = ready_case(options.case_name, options.overrides, options.directory);
+  const Scene& scene = ready.prepared.scene();
+  std::string directory = options.directory;
+  if (directory.empty()) directory = scene.output.directory;
+  if (directory.empty()) directory = "runs/" + scene.name;
+  end_on_signals();
+  Progress progress(options.quiet);
+  ComputeSettings settings;
+  settings.keep_running = keeps_running;
+  return run_in_folder(ready, directory, options, settings, progress, begin);
+}
+
+int compute_into(const ReadyCase& ready, const std::string& directory,
+                 const ComputeSettings& settings, bool resume) {
+  RunOptions options;
+  options.directory = directory;
+  options.overrides = ready.overrides;
+  options.threads = settings.threads;
+  options.resume = resume;
+  Progress progress(settings.say);
+  ComputeSettings callbacks = settings;
+  if (!callbacks.keep_running) callbacks.keep_running = [] { return true; };
+  return run_in_folder(ready, directory, options, callbacks, progress, RunFiles::Clock::now());
 }
 
 }  // namespace flexmorph::cases

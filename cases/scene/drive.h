@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,22 @@ struct TargetTrajectory {
   std::string body;  ///< Name of the rigid body.
   Law x, y, angle;   ///< Position of the origin of the body's axes [m] and their angle [rad].
 };
+
+/// A row of the table of sources of drives, which the key `from` of a drive names. The row
+/// "trajectory" belongs to Flexmorph; a program adds rows with functions of its own.
+struct DriveRow {
+  std::string name;      ///< Name in case files, as in from = "trajectory".
+  std::string sentence;  ///< Sentence that describes the source.
+
+  /// Returns value, rate and acceleration at a time from 0 to the end of the run [s]. Several
+  /// threads may call it at the same time. It is empty for "trajectory".
+  std::function<fem::Motion(double)> motion;
+};
+
+/// Returns all rows, in the order in which messages list them.
+std::span<const DriveRow* const> drive_rows();
+/// Adds a row to the table of sources of drives, see Registry::add().
+/// @throws Error (input) if the row has no motion, or for a name that is taken
+void register_drive(const DriveRow& row);
 
 }  // namespace flexmorph::cases

@@ -4,6 +4,7 @@
 #include "cases/scene/body_keys.h"
 #include "cases/scene/read.h"
 #include "cases/scene/tables.h"
+#include "geometry/registry.h"
 #include "geometry/text.h"
 #include "io/case_files/formula.h"
 #include "io/files.h"
@@ -13,6 +14,14 @@
 
 namespace flexmorph::cases {
 namespace {
+
+Registry<DriveRow>& drive_sources() {
+  static const DriveRow trajectory{
+      "trajectory", "The [trajectory] by inverse kinematics of the rigid mechanism.", {}};
+  static Registry<DriveRow> all("source of a drive", [](const DriveRow& row) { return row.name; },
+                                {&trajectory});
+  return all;
+}
 
 using io::any_number;
 using io::Jet;
@@ -65,11 +74,17 @@ const Key& kUntil =
         .description(
             "End of the parameter `t` of the curve, which begins at 0 and replaces the time.");
 const Key& kFrom = io::key("drive", "from")
-                       .word("a source of a drive", {"trajectory"})
+                       .word("a source of a drive",
+                             [] {
+                               io::Glossary rows;
+                               for (const DriveRow* row : drive_rows())
+                                 rows.emplace_back(row->name, row->sentence);
+                               return rows;
+                             })
                        .otherwise_as("required unless `formula`, `table` or `csv` is given")
                        .description(
-                           "The drive is computed from the [trajectory] by inverse kinematics of "
-                           "the rigid mechanism.");
+                           "Source of the drive: the trajectory of the case, or a function that "
+                           "a program has registered under this name.");
 
 /// Returns a function that is defined in [0, end] and is continued outside by the parabola of
 /// value, rate and acceleration at the nearer end.
@@ -206,7 +221,17 @@ Drive read_drive(const Table& t, Scene& scene, bool has_trajectory) {
   if (t.has(kFormula) + t.has(kTable) + t.has(kCsv) + t.has(kFrom) != 1)
     t.fail("a drive needs exactly one of `formula`, `table`, `csv` and `from`");
   if (t.has(kFrom)) {
-    t.choice(kFrom);
+    const DriveRow& source = *drive_sources().find(t.choice(kFrom));
+    if (source.motion) {
+      drive.words = "function '" + source.name + "' of the program";
+      drive.motion = over_run(
+          [motion = source.motion](double time) {
+            const fem::Motion x = motion(time);
+            return Jet{x.value, x.rate, x.acceleration};
+          },
+          scene.time.end);
+      return drive;
+    }
     if (!has_trajectory) t.fail(kFrom, "the case has no [trajectory]");
     drive.from_trajectory = true;
     drive.words = "from the trajectory";
@@ -258,6 +283,13 @@ double extreme(const std::function<fem::Motion(double)>& motion, double a, doubl
 }
 
 }  // namespace
+
+std::span<const DriveRow* const> drive_rows() { return drive_sources().rows(); }
+
+void register_drive(const DriveRow& row) {
+  if (!row.motion) throw Error::input("the source of a drive '" + row.name + "' has no motion");
+  drive_sources().add(row);
+}
 
 std::map<std::string, double> read_constants(const Table& root) {
   std::map<std::string, double> out;

@@ -255,8 +255,10 @@ std::string located(const CaseNode& node, const std::string& key_path) {
          (fits ? node.shown : node.shown.substr(0, kMaxLineLength - 3) + "...") + number;
 }
 
-CaseDocument::CaseDocument(const std::string& file)
-    : path(file), text(read_text(file)), root(parse_case(text, file)) {}
+CaseDocument::CaseDocument(const std::string& file) : CaseDocument(file, read_text(file)) {}
+
+CaseDocument::CaseDocument(const std::string& file, std::string content)
+    : path(file), text(std::move(content)), root(parse_case(text, file)) {}
 
 void CaseDocument::apply(const std::string& change) {
   const std::string option = kOption + change;

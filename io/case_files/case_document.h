@@ -58,6 +58,10 @@ struct CaseDocument {
   /// Reads and parses a file.
   /// @throws Error (input) for a file that cannot be read or parsed
   explicit CaseDocument(const std::string& file);
+  /// Parses the text of a case.
+  /// @param file  name of the text in messages, which need not exist as a file
+  /// @throws Error (input) for a text that cannot be parsed
+  CaseDocument(const std::string& file, std::string text);
 
   /// Applies one override "KEY=VALUE" of the command line; "KEY=" removes KEY.
   /// @throws Error (input) when the override is not valid

@@ -260,8 +260,15 @@ void Table::fail(const std::string& allowed) const {
   throw Error::input(location_->table->location + ": " + path + allowed);
 }
 
-CaseFile::CaseFile(const std::string& path, std::span<const std::string> overrides) {
-  auto document = std::make_shared<CaseDocument>(path);
+CaseFile::CaseFile(const std::string& path, std::span<const std::string> overrides)
+    : CaseFile(std::make_shared<CaseDocument>(path), overrides) {}
+
+CaseFile CaseFile::of_text(const std::string& text, const std::string& path,
+                           std::span<const std::string> overrides) {
+  return CaseFile(std::make_shared<CaseDocument>(path, text), overrides);
+}
+
+CaseFile::CaseFile(std::shared_ptr<CaseDocument> document, std::span<const std::string> overrides) {
   document->rename_former_names();
   for (const std::string& change : overrides) {
     document->apply(change);

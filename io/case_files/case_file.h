@@ -12,6 +12,7 @@
 
 namespace flexmorph::io {
 
+struct CaseDocument;
 struct CaseNode;
 
 /// One entry of a list that contains numbers and names.
@@ -135,6 +136,12 @@ class CaseFile {
   /// @throws Error (input) for a missing or unreadable file, a syntax error (file:line), or an
   ///         override that names no location in the case.
   explicit CaseFile(const std::string& path, std::span<const std::string> overrides = {});
+  /// Reads the text of a case and applies overrides as the constructor does.
+  /// @param path  name in messages, which need not exist as a file; files that the case names are
+  ///              relative to its folder
+  /// @throws Error (input) as the constructor
+  static CaseFile of_text(const std::string& text, const std::string& path,
+                          std::span<const std::string> overrides = {});
 
   /// Returns the path of the file.
   const std::string& path() const;
@@ -169,6 +176,8 @@ class CaseFile {
   std::string explained(std::span<const std::string> overrides = {}) const;
 
  private:
+  CaseFile(std::shared_ptr<CaseDocument> document, std::span<const std::string> overrides);
+
   std::shared_ptr<const Table::Location> root_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -65,7 +66,7 @@ struct ResponseRow {
   /// if this number belongs to one body of the mechanism.
   bool of_motion = false, of_body = false;
   /// Creates the response for a plate.
-  std::unique_ptr<Response> (*make)(const Plate&) = nullptr;
+  std::function<std::unique_ptr<Response>(const Plate&)> make = {};
 
   /// Returns true if the response needs the state under the loads.
   bool needs_state() const { return !loads.empty(); }
