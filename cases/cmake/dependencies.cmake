@@ -183,6 +183,7 @@ if(flexmorph_missing)
   if(FLEXMORPH_TESTS)
     list(APPEND packages libgtest-dev)
   endif()
+  list(FILTER packages EXCLUDE REGEX " optional$")
   list(TRANSFORM packages REPLACE " *[|].*" "")
   list(JOIN packages " " packages)
   message(FATAL_ERROR

@@ -1,5 +1,6 @@
 # Components of `cmake --install --component ...`:
 # program: flexmorph and the shipped cases, in share/flexmorph/cases, where it searches for them.
+# python: the Python package, if it was built.
 # library: the shared library, which contains all of Flexmorph.
 # development: the static libraries, the files for linking the shared one, public headers under
 # include/flexmorph (included as in this tree: "fem/model/model.h"), examples, and the files for
@@ -37,6 +38,16 @@ foreach(library options ${flexmorph_static})
   set_target_properties(flexmorph_${library} PROPERTIES EXPORT_NAME ${library})
 endforeach()
 list(TRANSFORM flexmorph_static PREPEND flexmorph_)
+
+if(TARGET flexmorph_python)
+  set(FLEXMORPH_PYTHON_DIR "lib/python${FLEXMORPH_PYTHON_VERSION}/dist-packages" CACHE STRING
+      "folder of the Python package below the prefix")
+  install(TARGETS flexmorph_python LIBRARY COMPONENT python
+          DESTINATION ${FLEXMORPH_PYTHON_DIR}/flexmorph)
+  install(FILES ${flexmorph_python_sources}
+                ${PROJECT_BINARY_DIR}/python/flexmorph/__init__.pyi COMPONENT python
+          DESTINATION ${FLEXMORPH_PYTHON_DIR}/flexmorph)
+endif()
 
 # The shared library is linked from the objects of the static ones. Programs that use it need no
 # library but Eigen's headers.

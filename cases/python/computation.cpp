@@ -1,0 +1,119 @@
+#include "cases/python/computation.h"
+
+#include <omp.h>
+
+#include <cfenv>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "cases/process/blas_buffers.h"
+#include "geometry/plain_numbers.h"
+
+extern "C" int openblas_get_num_threads();
+extern "C" void openblas_set_num_threads(int n);
+
+namespace flexmorph::python {
+namespace {
+
+constexpr std::chrono::milliseconds kSignals(50);  // time between two looks at signals
+
+/// Lets OpenBLAS compute with one thread while computations of Flexmorph run.
+class OneBlasThread {
+ public:
+  OneBlasThread() {
+    const std::lock_guard lock(mutex());
+    if (users()++ > 0) return;
+    before() = openblas_get_num_threads();
+    if (before() != 1) openblas_set_num_threads(1);
+  }
+  ~OneBlasThread() {
+    const std::lock_guard lock(mutex());
+    if (--users() == 0 && before() != 1) openblas_set_num_threads(before());
+  }
+  OneBlasThread(const OneBlasThread&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex lock;
+    return lock;
+  }
+  static int& users() {
+    static int n = 0;
+    return n;
+  }
+  static int& before() {
+    static int n = 1;
+    return n;
+  }
+};
+
+/// The end of the work of a thread.
+struct End {
+  std::mutex lock;
+  std::condition_variable signal;
+  bool reached = false;
+  std::exception_ptr error;
+};
+
+void run(const std::function<void()>& work, int threads, End& end) {
+  std::exception_ptr error;
+  try {
+    std::fesetenv(FE_DFL_ENV);
+    omp_set_num_threads(threads);  // for this thread only
+    reserve_blas(threads);
+    work();
+  } catch (...) {
+    error = std::current_exception();
+  }
+  const std::lock_guard guard(end.lock);
+  end.error = std::move(error);
+  end.reached = true;
+  end.signal.notify_all();
+}
+
+/// Returns the exception that a signal handler of Python raises; null if there is none.
+std::exception_ptr exception_of_signals() {
+  const py::gil_scoped_acquire acquire;
+  if (PyErr_CheckSignals() == 0) return nullptr;
+  try {
+    throw py::error_already_set();
+  } catch (...) {
+    return std::current_exception();
+  }
+}
+
+}  // namespace
+
+Callback::Callback(const py::object& function) {
+  if (function.is_none()) return;
+  function_ = std::shared_ptr<py::object>(new py::object(function), [](const py::object* held) {
+    const py::gil_scoped_acquire acquire;
+    delete held;
+  });
+}
+
+void compute_in_thread(const std::function<void()>& work, int threads, const StopFlag& flag) {
+  std::exception_ptr interruption;
+  End end;
+  {
+    const py::gil_scoped_release release;
+    const PlainNumbers plain;
+    const OneBlasThread one;
+    std::thread worker([&] { run(work, threads, end); });
+    std::unique_lock waiting(end.lock);
+    while (!end.signal.wait_for(waiting, kSignals, [&] { return end.reached; })) {
+      waiting.unlock();
+      if (!interruption && (interruption = exception_of_signals())) flag.stop();
+      waiting.lock();
+    }
+    waiting.unlock();
+    worker.join();
+  }
+  if (interruption) std::rethrow_exception(interruption);
+  if (end.error) std::rethrow_exception(end.error);
+}
+
+}  // namespace flexmorph::python

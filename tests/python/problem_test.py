@@ -1,0 +1,177 @@
+"""Design problems of the Python package: gradients, adapters, solutions."""
+
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+
+import flexmorph
+import support
+
+COARSE = {"design.cell": 0.05, "design.min_thickness": 0.05}
+
+
+def direction_of(problem, seed):
+    """Return a design inside the bounds without symmetry, and a direction of unit size."""
+    random = np.random.default_rng(seed)
+    d = random.standard_normal(problem.n)
+    x = problem.x0 + 0.05 * random.uniform(-1, 1, problem.n)
+    return np.clip(x, problem.lower + 0.02, problem.upper - 0.02), d / np.max(np.abs(d))
+
+
+class Gradients(unittest.TestCase):
+    def check(self, problem, steps, seed=1):
+        x, d = direction_of(problem, seed)
+        for function, gradient in ((problem.objective, problem.gradient),
+                                   (problem.constraints, problem.jacobian)):
+            orders = support.taylor_orders(function, gradient, x, d, steps)
+            # The TDF is smooth, the error of the first order is h^2 until round-off; the order of
+            # the smallest steps that are resolved is asked.
+            self.assertAlmostEqual(np.median(orders[-3:]), 2.0, delta=0.05, msg=str(orders))
+
+    def test_short_beam(self):
+        problem = flexmorph.load("short_beam").problem(stage="coarse")
+        self.check(problem, [1e-3 / 2 ** k for k in range(6)])
+
+    def test_short_plate(self):
+        problem = flexmorph.load(support.SHORT_PLATE).problem("plate")
+        self.assertEqual(problem.bodies, ["plate"])
+        self.check(problem, [1e-3 / 2 ** k for k in range(6)])
+
+    def test_hessian_of_the_short_beam(self):
+        problem = flexmorph.load("short_beam", set=COARSE).problem(stage="coarse")
+        self.assertTrue(problem.has_hessian)
+        x, d = direction_of(problem, 0)
+        weights = np.linspace(1.0, 2.0, problem.m)
+
+        def lagrangian(y):
+            e = problem.evaluate(y)
+            return 0.5 * e.f + weights @ e.g
+
+        e = problem.evaluate(x)
+        slope = (0.5 * e.df + weights @ e.dg) @ d
+        bend = d @ problem.hessian_matrix(x, weights, 0.5) @ d
+        steps = [1.25e-3 / 2 ** k for k in range(5)]
+        errors = [abs(lagrangian(x + h * d) - lagrangian(x) - h * slope - 0.5 * h * h * bend)
+                  for h in steps]
+        orders = np.log2(np.array(errors[:-1]) / errors[1:])
+        self.assertAlmostEqual(np.median(orders[-3:]), 3.0, delta=0.05, msg=str(orders))
+        lower = problem.hessian(x, weights, 0.5)
+        rows, columns = problem.hessianstructure()
+        np.testing.assert_array_equal(problem.hessian_matrix(x, weights, 0.5)[rows, columns], lower)
+
+
+class Interfaces(unittest.TestCase):
+    def setUp(self):
+        self.problem = flexmorph.load("short_beam", set=COARSE).problem(stage="coarse")
+
+    def test_shapes_and_names(self):
+        p = self.problem
+        self.assertEqual((len(p.names), len(p.constraint_names)), (p.n, p.m))
+        self.assertEqual(p.names[3], "beam.1.angle")
+        e = p.evaluate(p.x0)
+        self.assertEqual((e.df.shape, e.g.shape, e.dg.shape), ((p.n,), (p.m,), (p.m, p.n)))
+        self.assertTrue(np.all(p.lower <= p.x0) and np.all(p.x0 <= p.upper))
+
+    def test_one_evaluation_serves_all_functions(self):
+        p = self.problem
+        before = p.evaluations
+        for function in (p.objective, p.gradient, p.constraints, p.jacobian):
+            function(p.x0)
+        self.assertEqual(p.evaluations, before + 1)
+        p.objective(p.x0 + 1e-9)
+        self.assertEqual(p.evaluations, before + 2)
+
+    def test_results_are_copies(self):
+        p = self.problem
+        p.gradient(p.x0)[:] = 0
+        self.assertGreater(np.abs(p.gradient(p.x0)).max(), 0)
+
+    def test_no_hessian_says_why(self):
+        p = flexmorph.load("short_beam", set=COARSE).problem()
+        self.assertFalse(p.has_hessian)
+        self.assertFalse(hasattr(p, "hessian"))
+        with self.assertRaises(flexmorph.NoHessian):
+            p.hessian_matrix(p.x0, np.zeros(p.m))
+        self.assertTrue(any(name.startswith("width") for name in p.constraint_names))
+
+    def test_wrong_arguments(self):
+        with self.assertRaises(ValueError):
+            self.problem.objective(np.zeros(3))
+        with self.assertRaises(flexmorph.InputError):
+            flexmorph.load("short_beam").problem("no_such_body")
+        with self.assertRaises(flexmorph.InputError):
+            flexmorph.load("short_beam").problem(of="motion")
+
+    def test_scipy_decreases_the_objective(self):
+        try:
+            from scipy.optimize import minimize
+        except ImportError:
+            self.skipTest("SciPy is absent")
+        p = self.problem
+        found = minimize(**p.scipy(), method="SLSQP", options={"maxiter": 40})
+        self.assertLess(p.constraints(found.x).max(), 1e-2)
+        self.assertLess(found.fun, p.objective(p.x0) - 0.3)
+
+    def test_nlopt_decreases_the_objective(self):
+        try:
+            import nlopt
+        except ImportError:
+            self.skipTest("NLopt for Python is absent")
+        p = self.problem
+        x = p.x0
+        for _ in range(4):  # boxes that move, because NLopt's first steps are long
+            opt = nlopt.opt(nlopt.LD_CCSAQ, p.n)
+            opt.set_lower_bounds(np.maximum(p.lower, x - 0.075))
+            opt.set_upper_bounds(np.minimum(p.upper, x + 0.075))
+            opt.set_min_objective(p.nlopt)
+            opt.add_inequality_mconstraint(p.nlopt_constraints, np.full(p.m, 1e-4))
+            opt.set_maxeval(10)
+            x = opt.optimize(x)
+        self.assertLess(p.constraints(x).max(), 1e-2)
+        self.assertLess(p.objective(x), p.objective(p.x0) - 0.2)
+
+
+class Solutions(unittest.TestCase):
+    def test_solve_minimizes(self):
+        p = flexmorph.load("short_beam", set=COARSE).problem(stage="coarse")
+        rows = []
+        found = p.solve("mma", stages=False, callback=rows.append, max_iterations=20)
+        self.assertEqual(len(rows), found.nit)
+        self.assertLess(found.violation, 1e-4)
+        self.assertEqual(found.fun, p.objective(found.x))
+        self.assertLess(found.fun, p.objective(p.x0) - 0.3)
+        next_stage = p.at("last", found.x)
+        np.testing.assert_array_equal(next_stage.designs(next_stage.x0)["beam"].components,
+                                      found.designs["beam"].components)
+
+    def test_solve_has_the_bits_of_the_program(self):
+        for case, body in ((support.SHORT_PLATE, "plate"), ("short_beam", "beam")):
+            changes = [] if body == "plate" else [
+                "design.cell=0.1", "design.min_thickness=0.1", "optimizer.max_iterations=8",
+                "output.plots=false", "output.vtk=false"]
+            with tempfile.TemporaryDirectory() as folder:
+                summary = support.run_program(pathlib.Path(folder) / "run", case, changes)
+                text = support.run_python(
+                    "import flexmorph, sys\n"
+                    "case = flexmorph.read(sys.argv[1]).case\n"
+                    "d = case.problem(sys.argv[2]).solve('mma').designs[sys.argv[2]]\n"
+                    "print(d.components.tobytes().hex(), repr(d.results['compliance']))",
+                    summary["blas_kernel"], pathlib.Path(folder) / "run", body)
+                run = flexmorph.read(pathlib.Path(folder) / "run")
+            bits, compliance = text.split()
+            self.assertEqual(bits, run.designs[body].components.tobytes().hex())
+            self.assertEqual(float(compliance), run.designs[body].results["compliance"])
+
+    def test_a_callback_stops(self):
+        p = flexmorph.load("short_beam", set=COARSE).problem(stage="coarse")
+        found = p.solve("mma", stages=False, callback=lambda row: row["iteration"] == 3)
+        self.assertEqual((found.nit, found.status), (3, "observer"))
+        with self.assertRaises(ZeroDivisionError):
+            for optimizer in ("mma", "nlopt_ccsaq", "ipopt"):
+                p.solve(optimizer, stages=False, callback=lambda row: 1 / 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
