@@ -1,15 +1,19 @@
 #include "io/output_folder.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <sstream>
 #include <system_error>
 #include <thread>
 
@@ -92,6 +96,114 @@ int take_list(const std::string& folder, int flags, bool empties) {
       write(list, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
     refuse(folder, "the list of its files cannot be written: " + reason_of(errno));
   return list;
+}
+
+/// Returns the names in the list of a folder that are files below it. The folder is given by its
+/// file descriptor, so that no symbolic link can take its place.
+/// @return nothing if there is no list
+std::optional<std::set<std::string>> names_in(int folder) {
+  const int file = openat(folder, kList, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return {};
+  std::string text;
+  std::array<char, 4096> block{};
+  for (ssize_t n = 0; (n = read(file, block.data(), block.size())) > 0;)
+    text.append(block.data(), static_cast<size_t>(n));
+  struct stat status {};
+  const bool regular = fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+  close(file);
+  if (!regular) return {};
+  std::set<std::string> out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (!line.starts_with(kOwner) && !leaves_folder(line)) out.insert(line);
+  return out;
+}
+
+/// Walks through a folder whose list names its files, and counts or removes these files.
+class OwnedWalk {
+ public:
+  explicit OwnedWalk(bool removes) : removes_(removes) {}
+
+  /// @param shown   path of the folder for messages
+  /// @param prefix  path of the folder from the folder with the list, empty or ending with '/'
+  /// @param names   names in the list
+  void enter(int folder, const std::string& shown, const std::string& prefix,
+             const std::set<std::string>& names) {
+    for (const std::string& name : entries_of(folder, shown)) {
+      struct stat status {};
+      if (fstatat(folder, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) continue;
+      const std::string path = shown + "/" + name;
+      if (S_ISDIR(status.st_mode)) {
+        enter_subfolder(folder, name, path, prefix, names);
+      } else if (S_ISREG(status.st_mode) && (names.contains(prefix + name) || name == kList)) {
+        if (name == kList) continue;  // is removed last
+        out_.bytes += static_cast<double>(status.st_size);
+        ++out_.files;
+        remove(folder, name, path);
+      } else {
+        out_.others.push_back(path);
+      }
+    }
+  }
+  void remove(int folder, const std::string& name, const std::string& path) const {
+    if (removes_ && unlinkat(folder, name.c_str(), 0) != 0 && errno != ENOENT)
+      throw Error::input(path + ": cannot be removed: " + reason_of(errno));
+  }
+  const OwnedFiles& found() const { return out_; }
+
+ private:
+  void enter_subfolder(int folder, const std::string& name, const std::string& path,
+                       const std::string& prefix, const std::set<std::string>& names) {
+    const int inner = openat(folder, name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    // A folder with its own list is another run.
+    if (inner < 0 || names_in(inner)) {
+      out_.others.push_back(path);
+      if (inner >= 0) close(inner);
+      return;
+    }
+    enter(inner, path, prefix + name + "/", names);
+    close(inner);
+    // The system refuses to remove a folder that is not empty.
+    if (removes_) unlinkat(folder, name.c_str(), AT_REMOVEDIR);
+  }
+
+  static std::vector<std::string> entries_of(int folder, const std::string& shown) {
+    const int copy = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR* const list = copy < 0 ? nullptr : fdopendir(copy);
+    if (list == nullptr) {
+      if (copy >= 0) close(copy);
+      throw Error::input(shown + ": cannot be read: " + reason_of(errno));
+    }
+    std::vector<std::string> out;
+    while (const dirent* entry = readdir(list)) {
+      const std::string name = entry->d_name;
+      if (name != "." && name != "..") out.push_back(name);
+    }
+    closedir(list);
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  bool removes_;
+  OwnedFiles out_;
+};
+
+/// Opens a folder that is no symbolic link, and calls a function with its file descriptor and the
+/// names in its list.
+void with_list(const std::string& folder, const auto& use) {
+  const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  const auto names = opened < 0 ? std::nullopt : names_in(opened);
+  if (!names) {
+    if (opened >= 0) close(opened);
+    refuse(folder, "this is no folder of a run");
+  }
+  try {
+    use(opened, *names);
+  } catch (...) {
+    close(opened);
+    throw;
+  }
+  close(opened);
 }
 
 /// Returns NAME.previous, or the first of NAME.previous.2, NAME.previous.3, ... that does not
@@ -226,6 +338,34 @@ bool is_being_filled(const std::string& folder) {
   const bool held = flock(list, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(list);
   return held;
+}
+
+bool has_output_list(const std::string& folder) {
+  const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (opened < 0) return false;
+  const bool out = names_in(opened).has_value();
+  close(opened);
+  return out;
+}
+
+OwnedFiles owned_files(const std::string& folder) {
+  OwnedWalk walk(false);
+  with_list(folder, [&](int opened, const auto& names) { walk.enter(opened, folder, "", names); });
+  return walk.found();
+}
+
+OwnedFiles remove_owned_files(const std::string& folder) {
+  OwnedWalk walk(true);
+  with_list(folder, [&](int opened, const auto& names) {
+    // No process can begin to fill the folder while this one holds the lock.
+    const int lock = lock_of(list_of(folder), O_RDONLY | O_NOFOLLOW);
+    if (lock < 0 && errno == EWOULDBLOCK) refuse_as_taken(folder);
+    walk.enter(opened, folder, "", names);
+    walk.remove(opened, kList, list_of(folder));
+    if (lock >= 0) close(lock);
+  });
+  rmdir(folder.c_str());  // the system refuses to remove a folder that is not empty
+  return walk.found();
 }
 
 }  // namespace flexmorph::io

@@ -84,4 +84,26 @@ class FolderLock {
 /// Returns true if a running process fills a folder.
 bool is_being_filled(const std::string& folder);
 
+/// Returns true if a folder contains the list of an OutputFolder or of a study. A symbolic link to
+/// a folder is none.
+bool has_output_list(const std::string& folder);
+
+/// The files in a folder and in its subfolders that belong to Flexmorph, see OutputFolder. An
+/// OutputFolder within another one does not belong to it.
+struct OwnedFiles {
+  double bytes = 0;  ///< Size of all of them [bytes].
+  size_t files = 0;  ///< Number of files.
+  std::vector<std::string>
+      others;  ///< Paths of all other files, symbolic links and output folders.
+};
+/// Returns the files of a folder that belong to Flexmorph. Symbolic links are not followed.
+/// @throws Error (input) when the folder has no list or cannot be read.
+OwnedFiles owned_files(const std::string& folder);
+/// Removes the files of a folder that belong to Flexmorph, and all folders that are empty then,
+/// which may include the folder itself. Symbolic links are neither followed nor removed.
+/// @return removed files, and the remaining ones
+/// @throws Error (input) as owned_files(), when a running process fills the folder, or with the
+///         first file that cannot be removed.
+OwnedFiles remove_owned_files(const std::string& folder);
+
 }  // namespace flexmorph::io

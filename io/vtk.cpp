@@ -14,7 +14,9 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "geometry/plain_numbers.h"
 #include "io/files.h"
@@ -23,6 +25,14 @@
 
 namespace flexmorph::io {
 namespace {
+
+/// Returns a number rounded to this number of bits of its mantissa.
+float rounded(float value, int bits) {
+  constexpr int kAll = 23;
+  if (bits >= kAll) return value;
+  const uint32_t unit = uint32_t{1} << (kAll - bits);
+  return std::bit_cast<float>((std::bit_cast<uint32_t>(value) + unit / 2) & ~(unit - 1));
+}
 
 /// Adds fields to point or cell data; place(k) is the index at which VTK stores value k of the
 /// field.
@@ -49,7 +59,7 @@ void add_fields(vtkFieldData* data, std::span<const Field> fields, int n, const 
         if (!std::isfinite(value))
           throw Error::numerical(path + ": field '" + field.name + "' is not finite at entry " +
                                  std::to_string(k));
-        tuple[i] = static_cast<float>(value);
+        tuple[i] = rounded(static_cast<float>(value), field.bits);
       }
     }
     data->AddArray(array);
@@ -105,7 +115,7 @@ void write_cells(const std::string& path, vtkPoints* points, int type,
 }  // namespace
 
 void write_image_data(const std::string& path, const Grid& grid, std::span<const Field> cell_fields,
-                      std::span<const Field> point_fields) {
+                      std::span<const Field> point_fields, std::span<const Field> data_fields) {
   vtkNew<vtkImageData> image;
   image->SetDimensions(grid.nx + 1, grid.ny + 1, 1);
   image->SetOrigin(grid.x0, grid.y0, 0);
@@ -116,6 +126,10 @@ void write_image_data(const std::string& path, const Grid& grid, std::span<const
              [&](int k) { return (k % grid.ny) * grid.nx + k / grid.ny; });
   add_fields(image->GetPointData(), point_fields, grid.n_nodes(), path,
              [&](int k) { return (k % (grid.ny + 1)) * (grid.nx + 1) + k / (grid.ny + 1); });
+  for (const Field& field : data_fields)
+    add_fields(image->GetFieldData(), {&field, 1},
+               static_cast<int>(field.values.size()) / std::max(1, field.components), path,
+               same_location);
   write_xml<vtkXMLImageDataWriter>(path, image.Get());
 }
 
@@ -171,7 +185,7 @@ void write_components(const std::string& path, std::span<const Component> compon
   std::array<std::vector<double>, kNames.size()> values;
   for (const Component& component : components) {
     outlines.push_back(outline(component, min_half_thickness, segments));
-    values[0].push_back(static_cast<double>(outlines.size()) - 1);
+    values[0].push_back(static_cast<double>(outlines.size()));
     const auto parameters = component.parameters();
     for (size_t i = 0; i < parameters.size(); ++i) values[i + 1].push_back(parameters[i]);
   }
@@ -181,14 +195,18 @@ void write_components(const std::string& path, std::span<const Component> compon
 }
 
 void Series::add(double time, const std::string& file, int part) {
-  frames_.push_back("    <DataSet timestep=\"" + to_text(time) + "\" part=\"" + to_text(part) +
-                    "\" file=\"" + xml_escaped(file) + "\"/>\n");
+  frames_.push_back({file, "    <DataSet timestep=\"" + to_text(time) + "\" part=\"" +
+                               to_text(part) + "\" file=\"" + xml_escaped(file) + "\"/>\n"});
   std::string text =
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
       "  <Collection>\n";
-  for (const std::string& frame : frames_) text += frame;
+  for (const Frame& frame : frames_) text += frame.line;
   write_file(path_, text + "  </Collection>\n</VTKFile>\n");
+}
+
+void Series::drop(const std::string& file) {
+  std::erase_if(frames_, [&](const Frame& frame) { return frame.file == file; });
 }
 
 void write_png(const std::string& path, const Grid& grid, std::span<const double> cell_values,

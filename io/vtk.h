@@ -19,13 +19,17 @@ struct Field {
   std::string name;                ///< Name in ParaView.
   std::span<const double> values;  ///< Values (components n).
   int components = 1;              ///< Number of values per cell or point.
+  /// Number of bits of the mantissa that are kept, at most 23. Values are rounded to so many bits,
+  /// which makes files smaller: with 10 bits the relative error is at most 2⁻¹¹.
+  int bits = 23;
 };
 
 /// Writes image data (.vti) on a grid; fields have the order of the grid (y fastest).
+/// @param data_fields  fields of any length that belong to the whole data set (VTK: field data)
 /// @throws Error (numerical) when the file cannot be written, or with the name of a field that has
 ///         the wrong size or a value that is not finite. The other writers below throw it, too.
 void write_image_data(const std::string& path, const Grid& grid, std::span<const Field> cell_fields,
-                      std::span<const Field> point_fields);
+                      std::span<const Field> point_fields, std::span<const Field> data_fields = {});
 
 /// A mesh of quadrilaterals in the plane or in space.
 struct QuadMesh {
@@ -46,7 +50,7 @@ void write_part_mesh(const std::string& path, const PartMesh& mesh,
 void write_outlines(const std::string& path, std::span<const std::vector<Vec2>> outlines,
                     std::span<const Field> cell_fields);
 
-/// Writes the outlines of components (.vtp) with their index (`component`, from 0) and parameters
+/// Writes the outlines of components (.vtp) with their index (`component`, from 1) and parameters
 /// (X0, Y0, half_length, angle, c1, c2, c3).
 void write_components(const std::string& path, std::span<const Component> components,
                       double min_half_thickness, int segments = 64);
@@ -62,6 +66,9 @@ class Series {
   /// @param file  path of the frame, relative to the folder of the index file
   /// @param part  index of the body, if one time has several files
   void add(double time, const std::string& file, int part = 0);
+  /// Removes the frame of a file, if there is one; the next add() writes the index file without it.
+  /// @param file  path of the frame, as it was passed to add()
+  void drop(const std::string& file);
 
   /// Returns the number of frames.
   int size() const { return static_cast<int>(frames_.size()); }
@@ -69,8 +76,11 @@ class Series {
   const std::string& path() const { return path_; }
 
  private:
+  struct Frame {
+    std::string file, line;  // path of the frame, and its line in the index file
+  };
   std::string path_;
-  std::vector<std::string> frames_;
+  std::vector<Frame> frames_;
 };
 
 /// Settings of the picture of a cell field in grey.

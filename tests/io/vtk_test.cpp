@@ -7,6 +7,7 @@
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkFieldData.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
@@ -82,6 +83,47 @@ TEST(ImageData, ValuesLieWhereTheyBelong) {
   }
 }
 
+// Rounding changes a value by at most half of the last bit that is kept, and makes files smaller.
+TEST(ImageData, RoundsTheMantissa) {
+  const Scratch scratch;
+  const Grid grid{.nx = 100, .ny = 100};
+  std::vector<double> values;
+  for (int k = 0; k < grid.n_cells(); ++k)
+    values.push_back(std::sin(0.7 * k) * std::exp(-1e-3 * k));
+  const std::vector<Field> all = {{"v", values}},
+                           ten = {{.name = "v", .values = values, .bits = 10}};
+  write_image_data(scratch / "all.vti", grid, all, {});
+  write_image_data(scratch / "ten.vti", grid, ten, {});
+  vtkNew<vtkXMLImageDataReader> exact, coarse;
+  read(exact, scratch / "all.vti");
+  read(coarse, scratch / "ten.vti");
+  for (int k = 0; k < grid.n_cells(); ++k) {
+    const double value = exact->GetOutput()->GetCellData()->GetArray("v")->GetTuple1(k);
+    EXPECT_NEAR(coarse->GetOutput()->GetCellData()->GetArray("v")->GetTuple1(k), value,
+                std::ldexp(std::abs(value), -11));
+  }
+  EXPECT_LT(contents_of(scratch / "ten.vti").size(),
+            0.75 * contents_of(scratch / "all.vti").size());
+}
+
+// Field data belong to no cell or point, and may have any length.
+TEST(ImageData, CarriesFieldsOfTheWholeDataSet) {
+  const Scratch scratch;
+  const Grid grid{.nx = 3, .ny = 2};
+  const std::vector<double> components = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
+  const std::vector<double> none, density(6, 0.5);
+  const std::vector<Field> data = {{"components", components, 7}, {"none", none, 7}};
+  write_image_data(scratch / "a.vti", grid, std::vector<Field>{{"density", density}}, {}, data);
+  vtkNew<vtkXMLImageDataReader> reader;
+  read(reader, scratch / "a.vti");
+  vtkDataArray* found = reader->GetOutput()->GetFieldData()->GetArray("components");
+  ASSERT_NE(found, nullptr);
+  ASSERT_EQ(found->GetNumberOfComponents(), 7);
+  ASSERT_EQ(found->GetNumberOfTuples(), 2);
+  for (int k = 0; k < 14; ++k) EXPECT_EQ(found->GetComponent(k / 7, k % 7), components[size_t(k)]);
+  EXPECT_EQ(reader->GetOutput()->GetCellData()->GetArray("density")->GetTuple1(5), 0.5);
+}
+
 TEST(QuadMeshFile, ReadsBackInPlaneAndSpace) {
   const Scratch scratch;
   for (const int dimension : {2, 3}) {
@@ -128,7 +170,7 @@ TEST(Outlines, CarryNumberAndParameters) {
     const auto value = [&](const char* name) {
       return poly->GetCellData()->GetArray(name)->GetTuple1(k);
     };
-    EXPECT_EQ(value("component"), k);
+    EXPECT_EQ(value("component"), k + 1);
     EXPECT_EQ(value("X0"), 0.5 * k);
     EXPECT_EQ(value("Y0"), 0.25);
     EXPECT_EQ(value("half_length"), 1);
@@ -162,6 +204,22 @@ TEST(SeriesFile, IsCompleteAfterEveryFrame) {
     EXPECT_STREQ(last->GetAttribute("timestep"), times[k]);
   }
   EXPECT_FALSE(std::filesystem::exists(series.path() + ".tmp"));
+}
+
+TEST(SeriesFile, ForgetsDroppedFrames) {
+  const Scratch scratch;
+  Series series(scratch / "a.pvd");
+  series.drop("last.vti");
+  series.add(1, "last.vti");
+  series.drop("last.vti");
+  series.add(2, "last.vti");
+  EXPECT_EQ(series.size(), 1);
+  series.drop("last.vti");
+  series.add(3, "third.vti");
+  const std::string text = contents_of(scratch / "a.pvd");
+  EXPECT_FALSE(contains(text, "last.vti"));
+  EXPECT_TRUE(contains(text, "timestep=\"3\""));
+  EXPECT_EQ(series.size(), 1);
 }
 
 TEST(Png, HasTheSizeAndStandsUpright) {
