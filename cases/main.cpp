@@ -14,6 +14,7 @@
 #include "geometry/plain_numbers.h"
 #include "geometry/text.h"
 #include "io/case_files/case_parser.h"
+#include "io/screen.h"
 
 namespace {
 
@@ -44,16 +45,24 @@ void finish_output() {
     throw Error::input("the output cannot be written: " + std::generic_category().message(errno));
 }
 
+/// Returns the help text of the selected command, or of the program.
+std::string shown_help(const CLI::App& app) {
+  constexpr size_t kTextOfOptions = 30;  // column of CLI11
+  return flexmorph::io::fitted_text(app.help(), flexmorph::io::screen_width(), kTextOfOptions);
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("Topology optimization of flexible mechanisms", "flexmorph");
   app.set_version_flag("--version", std::string("flexmorph ") + kVersion);
   app.footer(std::string("Options of a command: flexmorph COMMAND --help\n\n") + kExitCodes);
   app.require_subcommand(1);
   std::vector<Command> commands;
-  for (const auto& make : {commands_of_runs, commands_of_studies, commands_of_texts})
+  for (const auto& make :
+       {commands_of_runs, commands_of_studies, commands_of_folders, commands_of_texts})
     for (Command& command : make(app)) commands.push_back(std::move(command));
   CLI::App* help = app.add_subcommand("help", "prints this list");
-  const std::string all_help = app.help();  // after parsing it would be the help of one command
+  const std::string all_help =
+      shown_help(app);  // after parsing it would be the help of one command
   commands.push_back(printing(help, [&] { return all_help; }));
   if (argc > 1)
     refuse_unknown_command(app, argv[1]);
@@ -62,7 +71,9 @@ int parse_and_run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_name() != "CallForHelp") return app.exit(error) == 0 ? 0 : 2;
+    std::fputs(shown_help(app).c_str(), stdout);
+    return 0;
   }
   for (const Command& command : commands) {
     if (!*command.app) continue;

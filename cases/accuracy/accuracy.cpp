@@ -1,9 +1,7 @@
 #include "cases/accuracy/accuracy.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
 
@@ -54,7 +52,7 @@ class Measurement {
         file_(find_case(options.study.case_name), options.study.overrides),
         prepared_(read_scene(file_)),
         scene_(prepared_.scene()),
-        budget_(read_budget(options.budget)) {
+        budget_(read_duration("--budget", options.budget)) {
     require_buildable(prepared_);
     runs_.directory =
         options.study.directory.empty() ? "runs/accuracy_" + scene_.name : options.study.directory;
@@ -81,8 +79,7 @@ class Measurement {
     write_accuracy_csv(study_, path("accuracy.csv"));
     io::write_file(path("accuracy.md"), accuracy_markdown(study_));
     io::write_file(path("accuracy.svg"), accuracy_svg(study_));
-    std::fputs(accuracy_text(study_).c_str(), stdout);
-    std::printf("%s/accuracy.md, .csv, .svg\n", runs_.directory.c_str());
+    print_text(accuracy_text(study_) + runs_.directory + "/accuracy.md, .csv, .svg");
   }
 
  private:
@@ -170,7 +167,7 @@ class Measurement {
       starts_.push_back("design." + std::to_string(i) + ".start='" + folder + "/" +
                         components_name(scene_, scene_.designs[i].body) + "'");
     if (!options_.study.quiet)
-      std::printf("optimization: %s CPU s\n", io::to_text(result.seconds_cpu, 3).c_str());
+      print_text("optimization: " + io::to_text(result.seconds_cpu, 3) + " CPU s");
   }
 
   VariantResult result_of(const Variant& variant) const {
@@ -221,10 +218,9 @@ class Measurement {
       if (study_.parts[q] == part)
         run.values[q] = value_in(result.directory, study_.interests[q], part);
     if (options_.study.quiet) return;
-    std::printf("run %d, %s %s: %s, %s CPU s; remaining budget %s\n", ++n_runs_, name.c_str(),
-                run.level.name.c_str(), run.status.c_str(), io::to_text(run.seconds_cpu, 3).c_str(),
-                duration_text(left()).c_str());
-    std::fflush(stdout);
+    print_text("run " + std::to_string(++n_runs_) + ", " + name + " " + run.level.name + ": " +
+               run.status + ", " + io::to_text(run.seconds_cpu, 3) + " CPU s; remaining budget " +
+               duration_text(left()));
   }
 
   /// Measures levels, beginning with short runs, until the budget is used.
@@ -339,20 +335,6 @@ class Measurement {
 };
 
 }  // namespace
-
-double read_budget(const std::string& text) {
-  double number = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  const std::string unit(rest, end);
-  const double factor = unit.empty() || unit == "s" ? 1
-                        : unit == "min"             ? 60
-                        : unit == "h"               ? 3600
-                                                    : 0;
-  if (error != std::errc() || factor == 0 || !(number > 0) || !std::isfinite(number))
-    throw Error::input("--budget " + text + ": the budget is a time such as 120s, 2min or 1h");
-  return number * factor;
-}
 
 int accuracy_case(const AccuracyOptions& options) {
   Measurement measurement(options);

@@ -7,17 +7,13 @@ namespace flexmorph::cases {
 /// Options of the command `accuracy`.
 struct AccuracyOptions {
   StudyOptions study;           ///< Options of the study.
-  std::string budget = "120s";  ///< CPU time of all runs, see read_budget().
+  std::string budget = "120s";  ///< CPU time of all runs, see read_duration().
 
   /// Names of discretization parameters; empty means the parameters that the case names, or all.
   std::vector<std::string> refinements;
 
   bool verify = true;  ///< True if recommended settings are verified by runs within the budget.
 };
-
-/// Returns the time of "120s", "2min", "1.5h", or of a number of seconds without unit [s].
-/// @throws Error (input) for other texts.
-double read_budget(const std::string& text);
 
 /// Measures the error and the run time of a case for refinement series of its discretization
 /// parameters. It extrapolates the limits of the series and determines the cheapest settings for

@@ -5,6 +5,7 @@
 
 #include "geometry/text.h"
 #include "io/plots.h"
+#include "io/screen.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -122,7 +123,9 @@ Rows recommendation_rows(const AccuracyStudy& study) {
 
 std::string report_of(const AccuracyStudy& study, bool markdown) {
   const auto table = [&](const Rows& rows) {
-    return (markdown ? io::markdown_table(rows) : io::aligned_table(rows)) + "\n";
+    return (markdown ? io::markdown_table(rows)
+                     : io::fitted_table(rows, io::screen_width(), "accuracy.md")) +
+           "\n";
   };
   const auto heading = [&](const std::string& words) {
     return markdown ? "## " + words + "\n\n" : words + "\n";

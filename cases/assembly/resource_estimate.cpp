@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -21,12 +22,12 @@ constexpr double kBytesPerNumber = 8;
 
 // Measured sizes in bytes, see estimate_resources(): the program with its libraries, a report, a
 // number in a table; in a frame for ParaView the header, a point in the plane and a point in space;
-// a cell and a component in a frame of a design, a cell in its exports; a point in a picture of a
-// body in space.
+// a cell and a component in a frame of a design, and in a frame with all its fields; a cell in its
+// exports; a point in a picture of a body in space.
 constexpr double kProgram = 36e6, kReport = 5e5, kCsvNumber = 17;
 constexpr double kFrame = 1600, kPlanePoint = 19, kSpacePoint = 34;
-constexpr double kDesignCell = 25, kDesignComponent = 900, kDesignExports = 250,
-                 kPicturePoint = 190;
+constexpr double kDesignCell = 4, kDesignComponent = 35, kFieldsCell = 18, kOutlineComponent = 900,
+                 kDesignExports = 250, kPicturePoint = 190;
 // An entry of a tangent with its indices, in all copies that assembly and solvers keep.
 constexpr double kBytesPerEntry = 40;
 // A cell of a design: scale factors, topology description function and derivatives.
@@ -194,8 +195,12 @@ void add_design(const Scene& scene, const BodyDesign& d, ResourceEstimate& out) 
   const double every = scene.output.vtk ? scene.output.design_every : 0;
   const double iterations = out.iterations / static_cast<double>(scene.designs.size());
   const double frames = every > 0 ? std::ceil(iterations / every) : 0;
+  const double fields_every = std::max(every, 1.0 * scene.output.fields_every);
+  const double with_fields =
+      every == 0 ? 0 : 1 + (scene.output.fields_every > 0 ? iterations / fields_every : 0);
   out.disk.push_back({"frames of the design of '" + d.body + "'", "optimizer.max_iterations",
-                      frames * (kDesignCell * cells + kDesignComponent * components)});
+                      frames * (kFrame + kDesignCell * cells + kDesignComponent * components) +
+                          with_fields * (kFieldsCell * cells + kOutlineComponent * components)});
 }
 
 /// Returns the memory that libraries and reserve_blas() have mapped but do not use [bytes]. It
@@ -292,6 +297,21 @@ std::string bytes_text(double bytes) {
   size_t unit = 0;
   for (; size >= 1e3 && unit + 1 < std::size(kUnits); ++unit) size /= 1e3;
   return io::to_text(size, size >= 10 ? 3 : 2) + " " + kUnits[unit];
+}
+
+double read_duration(const std::string& option, const std::string& text) {
+  double number = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  const std::string unit(rest, end);
+  const double factor = unit.empty() || unit == "s" ? 1
+                        : unit == "min"             ? 60
+                        : unit == "h"               ? 3600
+                        : unit == "d"               ? 86400
+                                                    : 0;
+  if (error != std::errc() || factor == 0 || !(number > 0) || !std::isfinite(number))
+    throw Error::input(option + " " + text + ": this is a time such as 120s, 2min, 1.5h or 30d");
+  return number * factor;
 }
 
 std::string duration_text(double seconds) {

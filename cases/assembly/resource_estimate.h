@@ -58,6 +58,10 @@ std::string out_of_memory_text(const ResourceEstimate& resource_estimate);
 
 /// Returns a number of bytes as text, such as "1.2 GB".
 std::string bytes_text(double bytes);
+/// Returns the time that an option of the command line gives as "120s", "2min", "1.5h", "30d", or
+/// as a number of seconds without unit [s].
+/// @throws Error (input) for another text, and for a time that is not positive.
+double read_duration(const std::string& option, const std::string& text);
 /// Returns a duration in seconds as text: "40 s", "12 min", "3.1 h", "8 days".
 std::string duration_text(double seconds);
 

@@ -341,7 +341,7 @@ std::vector<std::string> plausibility_remarks(const Scene& scene) {
 }
 
 std::string summary_row(const std::string& what, const std::string& words) {
-  constexpr size_t kColumn = 22;
+  constexpr size_t kColumn = kSummaryIndent - 2;
   const size_t gap = what.size() < kColumn ? kColumn - what.size() : 1;
   return "  " + what + std::string(gap, ' ') + words + "\n";
 }

@@ -56,6 +56,8 @@ std::vector<TurnFigures> turn_figures(const Scene& scene);
 /// Returns one sentence about every implausible number, with its location in the case.
 std::vector<std::string> plausibility_remarks(const Scene& scene);
 
+/// Number of columns before the text of a line of a summary.
+inline constexpr size_t kSummaryIndent = 24;
 /// Returns one line of a summary: a name, and the text about it in the second column.
 std::string summary_row(const std::string& what, const std::string& words);
 

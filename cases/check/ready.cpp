@@ -32,23 +32,6 @@ fs::path own_file(const void* function) {
   return none ? program : file;
 }
 
-/// Returns the folder of the shipped cases. For an installed program or shared library it is
-/// share/flexmorph/cases beside its folder bin/, lib/ or lib/ARCHITECTURE/, and
-/// for the Python package beside lib/, even if the
-/// installation was moved; otherwise it is in the source tree.
-fs::path cases_folder() {
-  std::error_code none;
-  const fs::path beside = own_file(reinterpret_cast<const void*>(&cases_folder)).parent_path();
-  std::vector<fs::path> prefixes{beside.parent_path(), beside.parent_path().parent_path()};
-  if (beside.parent_path().filename() == "dist-packages")  // PREFIX/lib/pythonX.Y/dist-packages
-    prefixes.push_back(beside.parent_path().parent_path().parent_path().parent_path());
-  for (const fs::path& prefix : prefixes) {
-    const fs::path installed = prefix / "share/flexmorph/cases";
-    if (!beside.empty() && fs::is_directory(installed, none)) return installed;
-  }
-  return kCasesFolder;
-}
-
 /// Throws for joints that contradict each other, and for bodies that do not reach their joints.
 void require_start(Mechanism& mechanism) {
   constexpr double kPositionTolerance =
@@ -133,6 +116,19 @@ class FirstNamed {
 
 }  // namespace
 
+std::string cases_folder() {
+  std::error_code none;
+  const fs::path beside = own_file(reinterpret_cast<const void*>(&cases_folder)).parent_path();
+  std::vector<fs::path> prefixes{beside.parent_path(), beside.parent_path().parent_path()};
+  if (beside.parent_path().filename() == "dist-packages")  // PREFIX/lib/pythonX.Y/dist-packages
+    prefixes.push_back(beside.parent_path().parent_path().parent_path().parent_path());
+  for (const fs::path& prefix : prefixes) {
+    const fs::path installed = prefix / "share/flexmorph/cases";
+    if (!beside.empty() && fs::is_directory(installed, none)) return installed.string();
+  }
+  return kCasesFolder;
+}
+
 std::string located_refusal(const Scene& scene, const std::string& message) {
   if (!scene.file || message.starts_with(scene.file->path() + ":") || message.starts_with("--set "))
     return message;
@@ -196,7 +192,7 @@ std::string find_case(const std::string& name) {
   if (std::filesystem::is_regular_file(name)) return name;
   const std::vector<std::string> shipped = shipped_cases();
   if (std::find(shipped.begin(), shipped.end(), name) != shipped.end())
-    return cases_folder() / (name + ".toml");
+    return cases_folder() + "/" + name + ".toml";
   // A pipe is accepted, too; the reader of the file throws for a folder.
   if (std::filesystem::exists(name)) return name;
   const std::string stem = std::filesystem::path(name).stem().string();

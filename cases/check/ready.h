@@ -36,6 +36,10 @@ ReadyCase ready_case(const std::string& name, std::span<const std::string> overr
 ReadyCase ready_case(io::CaseFile file, std::span<const std::string> overrides,
                      const std::string& directory = "");
 
+/// Returns the folder of the shipped cases. For an installed program or shared library it is
+/// share/flexmorph/cases beside its folder bin/, lib/ or lib/ARCHITECTURE/, and for the Python
+/// package beside lib/, even if the installation was moved; otherwise it is in the source tree.
+std::string cases_folder();
 /// Returns the path of a case file: the path itself, or the path of the shipped case of this name.
 /// @throws Error (input) naming the shipped cases.
 std::string find_case(const std::string& name);

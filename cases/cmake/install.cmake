@@ -13,6 +13,9 @@ install(TARGETS flexmorph RUNTIME COMPONENT program)
 file(GLOB flexmorph_shipped CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cases/*.toml
                                               ${PROJECT_SOURCE_DIR}/cases/*.csv)
 install(FILES ${flexmorph_shipped} DESTINATION share/flexmorph/cases COMPONENT program)
+# Templates of `flexmorph new`.
+file(GLOB flexmorph_templates CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cases/templates/*.toml)
+install(FILES ${flexmorph_templates} DESTINATION share/flexmorph/cases/templates COMPONENT program)
 
 # Manual pages and completion of shells, printed by the program.
 set(shell ${PROJECT_BINARY_DIR}/shell)

@@ -12,11 +12,11 @@ namespace {
 
 /// Adds an option with a number from `low` to `high`.
 template <class T>
-void add_range(CLI::App& command, const std::string& names, T& value, T low, T high,
-               const std::string& text) {
+CLI::Option* add_range(CLI::App& command, const std::string& names, T& value, T low, T high,
+                       const std::string& text) {
   using io::to_text;
   const std::string range = text + ", " + to_text(low) + " to " + to_text(high);
-  command
+  return command
       .add_option(names, value, value == T() ? range : range + " (default " + to_text(value) + ")")
       ->type_name("NUMBER")
       ->check(CLI::Range(low, high).description(""));
@@ -28,7 +28,7 @@ const char* const kExitCodes =
     "Exit codes:\n"
     "  0  done    1  internal error    2  invalid input    4  interrupted\n"
     "  3  numerical failure, a failed run of a study, or a WRONG run of `stability`\n"
-    "  5  done, but an expectation of the case is violated, or the result is not usable";
+    "  5  done, but an expectation is violated, or the result is not usable";
 
 Command printing(CLI::App* app, const std::function<std::string()>& text, bool computes) {
   return {app,
@@ -66,9 +66,9 @@ CLI::Option* add_repeated(CLI::App& command, const std::string& names,
       ->allow_extra_args(false);
 }
 
-void add_number(CLI::App& command, const std::string& names, int& value, int low, int high,
-                const std::string& text) {
-  add_range(command, names, value, low, high, text);
+CLI::Option* add_number(CLI::App& command, const std::string& names, int& value, int low, int high,
+                        const std::string& text) {
+  return add_range(command, names, value, low, high, text);
 }
 
 void add_number(CLI::App& command, const std::string& names, double& value, double low, double high,

@@ -43,8 +43,8 @@ CLI::Option* add_repeated(CLI::App& command, const std::string& names,
                           const std::string& text);
 /// Adds an option with a number from `low` to `high`; the help text ends with this range and,
 /// except for 0, with the default, which is the current value.
-void add_number(CLI::App& command, const std::string& names, int& value, int low, int high,
-                const std::string& text);
+CLI::Option* add_number(CLI::App& command, const std::string& names, int& value, int low, int high,
+                        const std::string& text);
 /// Adds an option with a number from `low` to `high`; the help text ends with this range and,
 /// except for 0, with the default, which is the current value.
 void add_number(CLI::App& command, const std::string& names, double& value, double low, double high,
@@ -61,6 +61,8 @@ void add_case(CLI::App& command, std::string& name, std::vector<std::string>& ov
 std::vector<Command> commands_of_runs(CLI::App& app);
 /// Returns the commands that compute many cases: compare, sweep, accuracy, stability.
 std::vector<Command> commands_of_studies(CLI::App& app);
+/// Returns the commands for the files of a user: new, clean.
+std::vector<Command> commands_of_folders(CLI::App& app);
 /// Returns the command that prints manual pages.
 Command manual_command(CLI::App& app);
 /// Returns the commands that print texts: cases, keys, completion, manual.

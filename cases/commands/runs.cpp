@@ -2,11 +2,13 @@
 #include <memory>
 
 #include "cases/check/check.h"
+#include "cases/check/plausibility.h"
 #include "cases/commands/command.h"
 #include "cases/run/corrections.h"
 #include "cases/run/modes.h"
 #include "cases/run/run.h"
 #include "cases/run/verify_part.h"
+#include "io/screen.h"
 
 namespace flexmorph::cases {
 
@@ -34,7 +36,11 @@ Command check_command(CLI::App& app) {
   check->add_flag("--explain", options->explain, "prints only the case with all default values");
   return printing(
       check,
-      [options] { return check_case(options->case_name, options->overrides, options->explain); },
+      [options] {
+        const std::string text =
+            check_case(options->case_name, options->overrides, options->explain);
+        return options->explain ? text : io::fitted_text(text, io::screen_width(), kSummaryIndent);
+      },
       true);
 }
 
@@ -54,7 +60,8 @@ Command modes_command(CLI::App& app) {
   add_value(*modes, "-o,--output", options->directory, "FOLDER",
             "folder of the results (default runs/NAME_modes)");
   return printing(
-      modes, [options] { return modes_of_case(*options); }, true);
+      modes, [options] { return io::fitted_text(modes_of_case(*options), io::screen_width()); },
+      true);
 }
 
 Command certify_command(CLI::App& app) {

@@ -1,6 +1,3 @@
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -11,6 +8,7 @@
 #include "cases/results/schema.h"
 #include "io/case_files/case_parser.h"
 #include "io/files.h"
+#include "io/screen.h"
 
 namespace flexmorph::cases {
 
@@ -22,19 +20,12 @@ struct KeysOptions {
   bool schema = false, markdown = false;
 };
 
-/// Returns the number of columns of the terminal; 100 if the output is not a terminal.
-size_t screen_width() {
-  winsize size{};
-  const bool known = isatty(STDOUT_FILENO) && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
-  return known && size.ws_col > 0 ? size.ws_col : 100;
-}
-
 /// Returns the text that the command `keys` prints; empty if it updates a file.
 std::string keys_text(const KeysOptions& options) {
   if (options.renewed.empty())
     return options.schema     ? keys_as_schema()
            : options.markdown ? keys_as_markdown()
-                              : keys_for_terminal(options.table, screen_width());
+                              : keys_for_terminal(options.table, io::screen_width());
   io::write_file(options.renewed, with_references(io::read_text(options.renewed)));
   return "";
 }

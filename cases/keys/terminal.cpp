@@ -1,39 +1,24 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <sstream>
 
 #include "cases/keys/book.h"
+#include "io/screen.h"
 
 /// The reference of keys in columns for a terminal.
 namespace flexmorph::cases {
 namespace {
 
 constexpr size_t kColumns = 4;
+constexpr size_t kMinWidthOfColumns = 100;  // narrower screens show no columns
 using Cells = std::array<std::string, kColumns>;
 using ColumnWidths = std::array<size_t, kColumns>;
-
-/// Returns lines of at most `width` characters; a longer word gets a separate line.
-std::vector<std::string> wrapped(const std::string& text, size_t width) {
-  std::vector<std::string> lines(1);
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    std::string& line = lines.back();
-    if (line.empty())
-      line = word;
-    else if (line.size() + 1 + word.size() <= width)
-      line += " " + word;
-    else
-      lines.push_back(word);
-  }
-  return lines;
-}
 
 void write_row(const Cells& cells, const ColumnWidths& widths, std::string& out) {
   std::array<std::vector<std::string>, kColumns> lines;
   size_t height = 0;
   for (size_t c = 0; c < kColumns; ++c) {
-    lines[c] = wrapped(cells[c], widths[c]);
+    lines[c] = io::wrapped(cells[c], widths[c]);
     height = std::max(height, lines[c].size());
   }
   for (size_t i = 0; i < height; ++i) {
@@ -48,13 +33,22 @@ void write_row(const Cells& cells, const ColumnWidths& widths, std::string& out)
   }
 }
 
+/// Writes a row for a screen that is too narrow for its columns: type and default beside the name,
+/// and the sentence on lines of its own.
+/// @param names  width of the column of names
+void write_lines(const Cells& cells, size_t names, size_t width, std::string& out) {
+  const std::string name = cells[0] + std::string(names - std::min(names, cells[0].size()), ' ');
+  const std::string given = cells[2] == "required" ? cells[2] : "default: " + cells[2];
+  out += io::fitted_text("  " + name + "  " + cells[1] + "; " + given, width, names + 4);
+  out += io::fitted_text("      " + cells[3], width, 6);
+}
+
 /// Writes a table and the explanations of the words that its keys allow.
 /// @param explained  name of the only key whose words are explained; empty: all keys
 void write_table(const KeyTable& table, size_t width, std::string& out,
                  const std::string& explained = "") {
-  out += (out.empty() ? "" : "\n") + table.title();
-  if (table.own) out += ": " + table.own->sentence;
-  out += "\n";
+  out += out.empty() ? "" : "\n";
+  out += io::fitted_text(table.title() + (table.own ? ": " + table.own->sentence : ""), width);
   std::vector<Cells> rows;
   ColumnWidths widths{};
   for (const io::Key* key : table.keys) {
@@ -67,12 +61,16 @@ void write_table(const KeyTable& table, size_t width, std::string& out,
   widths[1] = 3 * rest / 10;
   widths[2] = 2 * rest / 10;
   widths[3] = rest - widths[1] - widths[2];
-  for (const Cells& cells : rows) write_row(cells, widths, out);
+  for (const Cells& cells : rows)
+    if (width < kMinWidthOfColumns)
+      write_lines(cells, widths[0], width, out);
+    else
+      write_row(cells, widths, out);
   for (const auto& [key, word, sentence] : meanings_of(table)) {
     if (!explained.empty() && key != explained) continue;
     std::string indent = "  ";
     for (const std::string& line :
-         wrapped(key + " = \"" + word + "\": " + sentence, taken + rest - 4)) {
+         io::wrapped(key + " = \"" + word + "\": " + sentence, width - 4)) {
       out += indent + line + "\n";
       indent = "    ";
     }
@@ -105,7 +103,7 @@ std::string keys_for_terminal(const std::string& word, size_t width) {
   std::string out;
   const std::vector<std::string> tables = key_table_names();
   if (word.empty()) {
-    for (const std::string& line : wrapped(kNumbersSentence, width)) out += line + "\n";
+    for (const std::string& line : io::wrapped(kNumbersSentence, width)) out += line + "\n";
     for (const KeyTable& each : key_book()) write_table(each, width, out);
   } else if (std::find(tables.begin(), tables.end(), word) != tables.end()) {
     write_table(table_of_keys(word), width, out);

@@ -79,6 +79,10 @@ history = path_of("design/iterations.pvd")
 if history:
     reader = simple.PVDReader(FileName=history)
     show(reader, "design by iteration", "density", "CELLS", not motion and not verified)
+fields = path_of("design/fields.pvd")
+if fields:
+    reader = simple.PVDReader(FileName=fields)
+    show(reader, "fields of the design by iteration", "strain_energy", "CELLS", False)
 
 if seen:
     bounds = seen[0].GetDataInformation().GetBounds()

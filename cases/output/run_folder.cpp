@@ -16,6 +16,7 @@ RunFolder::RunFolder(std::string path, const Scene& scene, bool beside, Begin be
     : folder_(std::move(path), begin),
       scene_(scene),
       iterations_(*this, "design/iterations.pvd"),
+      fields_(*this, "design/fields.pvd"),
       components_(*this, "design/components.pvd"),
       motion_(*this, "motion/motion.pvd"),
       writer_(beside) {
@@ -25,6 +26,10 @@ RunFolder::RunFolder(std::string path, const Scene& scene, bool beside, Begin be
 void RunFolder::FrameIndex::add(double time, const std::string& file, int part) {
   if (!series_) series_.emplace(folder_.file(name_));
   series_->add(time, file, part);
+}
+
+void RunFolder::FrameIndex::drop(const std::string& file) {
+  if (series_) series_->drop(file);
 }
 
 void RunFolder::write_frame(std::function<void()> task) {

@@ -152,6 +152,9 @@ class RunFolder {
   void keep_row(const mmc::RowOfHistory& row, const std::vector<std::string>& old);
   void forget_old_rows();
   bool wants_frame(int iteration) const;
+  bool keeps_fields(int iteration) const;
+  struct FrameNames;
+  void list_frame(int row, const FrameNames& names);
   bool has_frames(const mmc::RowOfHistory& row) const;
   void write_design_frame(const mmc::IterationReport& report);
   void write_history_row(const mmc::IterationReport& report);
@@ -164,13 +167,14 @@ class RunFolder {
    public:
     FrameIndex(RunFolder& folder, std::string name) : folder_(folder), name_(std::move(name)) {}
     void add(double time, const std::string& file, int part = 0);
+    void drop(const std::string& file);
 
    private:
     RunFolder& folder_;
     std::string name_;
     std::optional<io::Series> series_;
   };
-  FrameIndex iterations_, components_, motion_;
+  FrameIndex iterations_, fields_, components_, motion_;
   /// A written file of a frame of the motion: one body at one time [s].
   struct Frame {
     std::string file;

@@ -37,6 +37,11 @@ std::vector<std::string> columns_of(const Scene& scene) {
   return out;
 }
 
+/// Bits of the mantissa of density and topology description function in the files of every
+/// iteration, which are a third smaller with them. Outlines move by less than a thousandth of a
+/// cell.
+constexpr int kBits = 10;
+
 /// Returns the value of a cell of a table that was read; NaN if the cell is empty.
 double value_of(const std::string& cell) {
   double value = std::numeric_limits<double>::quiet_NaN();
@@ -44,17 +49,25 @@ double value_of(const std::string& cell) {
   return value;
 }
 
-/// Names of the frames of a design that belong to the n-th row of the history.
-struct FrameNames {
-  std::string image, lines;
-  FrameNames(const Scene& scene, const std::string& body, int n) {
+}  // namespace
+
+/// Names of the frame of a design that belongs to the n-th row of the history: density and
+/// topology description function, all other fields, and outlines of the components. Only the
+/// latest files of all other fields and of outlines exist, unless they are kept; the latest ones
+/// have the same names in every iteration.
+struct RunFolder::FrameNames {
+  std::string image, fields, lines, latest_fields, latest_lines;
+  bool kept;  ///< True if all fields of this frame are kept.
+
+  FrameNames(const Scene& scene, const std::string& body, int n, bool keeps) : kept(keeps) {
     const std::string stem = scene.designs.size() > 1 ? body + "_" : "";
     image = numbered("iteration_" + stem, n, ".vti");
-    lines = numbered("components_" + stem, n, ".vtp");
+    latest_fields = "fields_" + stem + "last.vti";
+    latest_lines = "components_" + stem + "last.vtp";
+    fields = kept ? numbered("fields_" + stem, n, ".vti") : latest_fields;
+    lines = kept ? numbered("components_" + stem, n, ".vtp") : latest_lines;
   }
 };
-
-}  // namespace
 
 void RunFolder::begin_history(Begin begin) {
   const std::vector<std::string> columns = columns_of(scene_);
@@ -78,11 +91,22 @@ bool RunFolder::wants_frame(int iteration) const {
          (iteration == 1 || iteration % request.design_every == 0);
 }
 
+/// Returns true if displacement, strain energy and outlines of a frame are kept: they are kept for
+/// the first frame after every `fields_every` iterations.
+bool RunFolder::keeps_fields(int iteration) const {
+  const Output& request = scene_.output;
+  if (request.fields_every == 0) return false;
+  return iteration / request.fields_every !=
+         std::max(0, iteration - request.design_every) / request.fields_every;
+}
+
 bool RunFolder::has_frames(const mmc::RowOfHistory& row) const {
   if (!wants_frame(row.iteration)) return true;
-  const FrameNames names(scene_, row.body, rows_ + 1);
-  return std::filesystem::exists(path() + "/design/" + names.image) &&
-         std::filesystem::exists(path() + "/design/" + names.lines);
+  const FrameNames names(scene_, row.body, rows_ + 1, keeps_fields(row.iteration));
+  const auto exists = [this](const std::string& name) {
+    return std::filesystem::exists(path() + "/design/" + name);
+  };
+  return exists(names.image) && (!names.kept || (exists(names.fields) && exists(names.lines)));
 }
 
 bool RunFolder::has_row(const mmc::RowOfHistory& row) {
@@ -112,9 +136,9 @@ void RunFolder::forget_old_rows() {
 void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::string>& old) {
   ++rows_;
   if (wants_frame(row.iteration))
-    write_frame([this, number = rows_, names = FrameNames(scene_, row.body, rows_)] {
-      iterations_.add(number, names.image);
-      components_.add(number, names.lines);
+    write_frame([this, number = rows_,
+                 names = FrameNames(scene_, row.body, rows_, keeps_fields(row.iteration))] {
+      list_frame(number, names);
     });
   const auto number = [&](const char* name) {
     const std::vector<std::string>& names = history_columns();
@@ -134,6 +158,21 @@ void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::st
   }
 }
 
+/// Adds a frame to the index files in place of the latest one, and removes the latest files if the
+/// frame has its own.
+void RunFolder::list_frame(int row, const FrameNames& names) {
+  iterations_.add(row, names.image);
+  const auto list = [&](FrameIndex& index, const std::string& name, const std::string& latest) {
+    const std::string folder = path() + "/design/";
+    index.drop(latest);
+    if (std::filesystem::exists(folder + name)) index.add(row, name);
+    std::error_code none;  // ignored: the file may be missing
+    if (names.kept) std::filesystem::remove(folder + latest, none);
+  };
+  list(fields_, names.fields, names.latest_fields);
+  list(components_, names.lines, names.latest_lines);
+}
+
 /// Writes the VTK files of an intermediate design.
 void RunFolder::write_design_frame(const mmc::IterationReport& r) {
   const double start = thread_seconds();
@@ -149,7 +188,8 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
                                         r.loads.position(r.loads.n_loads() - 1));
   output_seconds_ += thread_seconds() - start;
   // All data are copied because a separate thread may write them during the next iteration.
-  write_frame([this, names = FrameNames(scene_, r.problem.body, rows_), row = rows_,
+  write_frame([this, row = rows_,
+               names = FrameNames(scene_, r.problem.body, rows_, keeps_fields(r.iteration)),
                grid = r.problem.grid, mass = factors.mass, stiffness = factors.stiffness,
                energy = VectorXd(0.5 * by_stiffness.cwiseProduct(factors.stiffness)),
                phi = VectorXd(r.state.phi()), displacement = std::move(shown),
@@ -159,14 +199,20 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
     const auto view = [](const VectorXd& v) {
       return std::span<const double>(v.data(), static_cast<size_t>(v.size()));
     };
-    const io::Field cells[] = {{"density", view(mass)},
-                               {"stiffness_factor", view(stiffness)},
+    const io::Field density{.name = "density", .values = view(mass), .bits = kBits};
+    const io::Field tdf{.name = "tdf", .values = view(phi), .bits = kBits};
+    const io::Field cells[] = {{"stiffness_factor", view(stiffness)},
                                {"strain_energy", view(energy)}};
-    const io::Field points[] = {{"tdf", view(phi)}, {"displacement", view(displacement), 2}};
-    io::write_image_data(folder_.file("design/" + names.image), grid, cells, points);
-    iterations_.add(row, names.image);
+    const io::Field points{"displacement", view(displacement), 2};
+    std::vector<double> parameters;
+    for (const Component& component : components)
+      for (const double each : component.parameters()) parameters.push_back(each);
+    const io::Field data{"components", parameters, Component::kParameters};
+    io::write_image_data(folder_.file("design/" + names.image), grid, {&density, 1}, {&tdf, 1},
+                         {&data, 1});
+    io::write_image_data(folder_.file("design/" + names.fields), grid, cells, {&points, 1});
     io::write_components(folder_.file("design/" + names.lines), components, min_half_thickness);
-    components_.add(row, names.lines);
+    list_frame(row, names);
     output_seconds_ += thread_seconds() - clock;
   });
 }

@@ -10,6 +10,7 @@
 #include "cases/scene/elements/row.h"
 #include "io/files.h"
 #include "io/json.h"
+#include "io/screen.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -188,7 +189,8 @@ std::string modes_of_case(const ModesOptions& options) {
   write_report(scene, table, heading, folder);
   if (scene.output.vtk) write_shapes(prepared, point, table, folder);
   folder.finish();
-  std::string out = scene.title + "\n" + heading + "\n\n" + io::aligned_table(mode_rows(table));
+  std::string out = scene.title + "\n" + heading + "\n\n" +
+                    io::fitted_table(mode_rows(table), io::screen_width(), "modes.csv");
   out += "\n";
   for (const std::string& each : mode_remarks(table)) out += each + "\n";
   if (!folder.moved_to().empty())

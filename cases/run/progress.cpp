@@ -1,6 +1,5 @@
 #include "cases/run/progress.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -11,19 +10,13 @@
 #include "cases/assembly/resource_estimate.h"
 #include "geometry/text.h"
 #include "io/files.h"
+#include "io/screen.h"
 
 namespace flexmorph::cases {
 namespace {
 
 constexpr double kTerminal = 0.1, kElsewhere = 30;      // time between lines [s]
 constexpr std::chrono::milliseconds kRepetition(1000);  // time after which a line is shown again
-
-/// Returns the number of columns of the terminal; 80 if it is unknown.
-int columns() {
-  winsize size{};
-  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  return known ? size.ws_col : 80;
-}
 
 }  // namespace
 
@@ -59,7 +52,7 @@ void Progress::say(const std::string& text) {
   const std::lock_guard guard(lock_);
   if (told_) return told_(text);
   end_line();
-  if (!quiet_) std::printf("%s\n", text.c_str());
+  if (!quiet_) std::fputs(io::fitted_text(text, io::screen_width()).c_str(), stdout);
   std::fflush(stdout);
 }
 
@@ -69,8 +62,10 @@ void Progress::object(const std::string& kind, const std::string& text) {
   end_line();
   const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   const char* const before = !colour ? "" : kind == "warning" ? "\x1b[33m" : "\x1b[31m";
-  std::fprintf(stderr, "flexmorph: %s%s:%s %s\n", before, kind.c_str(), colour ? "\x1b[0m" : "",
-               text.c_str());
+  const std::string all = io::fitted_text("flexmorph: " + kind + ": " + text, io::screen_width());
+  const size_t at = std::string("flexmorph: ").size(), end = at + kind.size() + 1;
+  std::fprintf(stderr, "%s%s%s%s%s", all.substr(0, at).c_str(), before,
+               all.substr(at, end - at).c_str(), colour ? "\x1b[0m" : "", all.substr(end).c_str());
 }
 
 void Progress::begin(const std::string& phase) {
@@ -144,11 +139,11 @@ void Progress::print(const std::string& text) {
   shown_ = Clock::now();
   if (terminal_) {
     // The line is cut to the width of the terminal, because a wrapped line cannot be overwritten.
-    const int width = columns() - 1;
+    const int width = static_cast<int>(io::screen_width()) - 1;
     std::printf("\r%-*.*s", width, width, text.c_str());
     open_ = true;
   } else {
-    std::printf("%s\n", text.c_str());
+    std::fputs(io::fitted_text(text, io::screen_width()).c_str(), stdout);
   }
   std::fflush(stdout);
 }

@@ -1,6 +1,7 @@
 #include "cases/run/run.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <new>
@@ -16,6 +17,7 @@
 #include "cases/run/path_run.h"
 #include "io/case_files/case_parser.h"
 #include "io/files.h"
+#include "io/screen.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -77,6 +79,17 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   return missed ? kExpectationsMissed : 0;
 }
 
+/// Returns a word as a shell reads it, in quotes if it has other characters than those of names.
+std::string shell_word(const std::string& word) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("_-./=,:+").find(char(c)) != std::string::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
 /// Removes the files that only resuming needs, from the folder of a complete run that was killed
 /// before it removed these files.
 void remove_progress_of_finished(const std::string& directory) {
@@ -88,6 +101,33 @@ void remove_progress_of_finished(const std::string& directory) {
 }
 
 }  // namespace
+
+std::string resume_command(const RunOptions& options) {
+  std::vector<std::string> words = {"flexmorph run " + shell_word(options.case_name)};
+  for (const std::string& change : options.overrides)
+    words.push_back("--set " + shell_word(change));
+  if (!options.directory.empty()) words.push_back("-o " + shell_word(options.directory));
+  if (options.threads != 1) words.push_back("--threads " + std::to_string(options.threads));
+  if (options.condition) words.emplace_back("--condition");
+  if (options.explain) words.emplace_back("--explain");
+  words.emplace_back("--resume");
+  std::string out;
+  size_t column = 2;
+  for (const std::string& word : words) {
+    constexpr size_t kEnd = 2;  // columns of the mark of a line that goes on
+    const bool begins = out.empty();
+    if (!begins && column + 1 + io::columns_of(word) + kEnd > io::screen_width()) {
+      out += " \\\n    ";
+      column = 4;
+    } else {
+      out += begins ? "  " : " ";
+      column += begins ? 0 : 1;
+    }
+    out += word;
+    column += io::columns_of(word);
+  }
+  return out;
+}
 
 EndedRun run_prepared(const RunContext& run) {
   const Scene& scene = run.scene();
@@ -156,7 +196,10 @@ int run_in_folder(const ReadyCase& ready, const std::string& directory, const Ru
                                  .condition = options.condition,
                                  .resume = options.resume,
                                  .iteration = settings.iteration});
-  return end_run(std::move(ended), !is_another_case(options.overrides), files, progress);
+  const int code = end_run(std::move(ended), !is_another_case(options.overrides), files, progress);
+  if (code == 4 && !scene.statics)
+    progress.say("The command that continues this run:\n" + resume_command(options));
+  return code;
 }
 
 }  // namespace

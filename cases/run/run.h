@@ -25,6 +25,10 @@ struct RunOptions {
   bool condition = false;  ///< True if conditions of matrices are estimated at the end.
 };
 
+/// Returns the command that resumes an interrupted run, for the screen: words that a shell reads,
+/// on lines that are not longer than the screen is wide unless a word is.
+std::string resume_command(const RunOptions& options);
+
 /// Runs a case, from its file to its run folder.
 /// @return exit code: 0 for a complete run, 4 for an interrupted run (its results so far are
 ///         written), or kExpectationsMissed

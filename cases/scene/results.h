@@ -26,6 +26,7 @@ struct Observe {
 struct Output {
   std::string directory;    ///< Run folder; empty: the command line chooses it.
   int design_every = 1;     ///< Design iterations between VTK files; 0: none are written.
+  int fields_every = 25;    ///< Design iterations between VTK files of all fields; 0: last only.
   double motion_every = 0;  ///< Time between VTK files of the motion [s]; 0: none are written.
   int crisp_every = 25;     ///< Iterations between crisp evaluations; 0: final design only.
   bool vtk = true, plots = true;          ///< True if VTK files (plots) are written.

@@ -29,6 +29,13 @@ const io::Key& kDesignEvery =
         .integer("a number of iterations", 0, kMaxCount)
         .otherwise(1)
         .description("Number of iterations between two VTK files of the design; 0 writes none.");
+const io::Key& kFieldsEvery =
+    io::key("output", "fields_every")
+        .integer("a number of iterations", 0, kMaxCount)
+        .otherwise(25)
+        .description(
+            "Iterations between VTK files with displacement, energy and outlines; 0: only of the "
+            "last one.");
 const io::Key& kMotionEvery =
     io::key("output", "motion_every")
         .number(io::not_negative("a time", "s"))
@@ -101,6 +108,7 @@ Output read_output(const io::Table& t) {
   Output output;
   output.directory = t.string(kDirectory);
   output.design_every = t.integer(kDesignEvery);
+  output.fields_every = t.integer(kFieldsEvery);
   output.motion_every = t.number(kMotionEvery);
   output.crisp_every = t.integer(kCrispEvery);
   output.vtk = t.boolean(kVtk);

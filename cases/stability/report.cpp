@@ -3,6 +3,7 @@
 
 #include "cases/stability/stability.h"
 #include "io/files.h"
+#include "io/screen.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -47,21 +48,24 @@ std::string summary(std::span<const StabilityRow> rows) {
 }
 
 /// Returns the table of all rows.
-/// @param max_reason  largest number of characters of the last column
+/// @param max_reason  largest number of characters of a reason
 Table table_of(std::span<const StabilityRow> rows, size_t max_reason) {
-  Table out = {{"case", "suite", "parameter", "verdict", "exit"}};
+  Table out = {{"case", "suite", "parameter", "verdict", "exit", "reason"}};
   out[0].insert(out[0].end(), kRunNumbers.begin(), kRunNumbers.end());
-  out[0].insert(out[0].end(), {"seconds_cpu", "reason"});
+  out[0].emplace_back("seconds_cpu");
   for (const StabilityRow& row : rows) {
     std::vector<std::string>& line = out.emplace_back();
-    line = {row.case_name, row.suite, row.parameter, to_string(row.assessment.verdict),
-            to_text(row.exit_code)};
+    line = {row.case_name,
+            row.suite,
+            row.parameter,
+            to_string(row.assessment.verdict),
+            to_text(row.exit_code),
+            row.assessment.reason.size() > max_reason
+                ? row.assessment.reason.substr(0, max_reason - 3) + "..."
+                : row.assessment.reason};
     for (const std::optional<double>& value : row.assessment.numbers)
       line.push_back(value ? to_text(*value, 2) : "-");
     line.push_back(to_text(row.seconds_cpu, 2));
-    line.push_back(row.assessment.reason.size() > max_reason
-                       ? row.assessment.reason.substr(0, max_reason - 3) + "..."
-                       : row.assessment.reason);
   }
   return out;
 }
@@ -137,7 +141,8 @@ std::string stability_markdown(std::span<const StabilityRow> rows) {
 }
 
 std::string stability_text(std::span<const StabilityRow> rows, bool all) {
-  std::string out = all ? io::aligned_table(table_of(rows, 120)) + "\n" : "";
+  std::string out =
+      all ? io::fitted_table(table_of(rows, 120), io::screen_width(), "stability.md") + "\n" : "";
   for (const StabilityRow& row : rows)
     if (!all && row.assessment.verdict == StabilityVerdict::wrong)
       out += "WRONG: " + row.case_name + ", " + row.suite + ", " + row.parameter + ": " +

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <set>
 
@@ -108,8 +107,7 @@ int check_stability(const StabilityOptions& options) {
   };
   const StudyOutcome outcome = run_variants(study, plan.variants, changed);
   const std::vector<StabilityRow> ran = write_tables(stem, plan.rows);
-  std::fputs(stability_text(ran, !options.quiet).c_str(), stdout);
-  std::printf("%s.csv, .md, .svg\n", stem.c_str());
+  print_text(stability_text(ran, !options.quiet) + stem + ".csv, .md, .svg");
   const bool any_wrong = std::any_of(ran.begin(), ran.end(), [](const StabilityRow& row) {
     return row.assessment.verdict == StabilityVerdict::wrong;
   });

@@ -83,8 +83,9 @@ int compare_case(const CompareOptions& wanted) {
   const StudyOutcome outcome = run_variants(
       options.study, comparison.variants,
       [&](std::span<const VariantResult> runs) { write_comparison(comparison, runs, directory); });
-  std::fputs(io::aligned_table(summary_of(comparison, outcome.results)).c_str(), stdout);
-  std::fputs(convergence_note(outcome.results).c_str(), stdout);
+  print_table(summary_of(comparison, outcome.results), "compare.md");
+  print_text(warnings_note(outcome.results));
+  print_text(convergence_note(outcome.results));
   std::printf("%s/compare.md, .csv, .svg\n", directory.c_str());
   return outcome.exit_code;
 }

@@ -146,7 +146,8 @@ int compare_cycles(const CompareCyclesOptions& wanted) {
   const StudyOutcome outcome = run_variants(study, variants, [&](std::span<const VariantResult>) {
     write(results_of(), study.directory, scene.title);
   });
-  std::fputs(io::aligned_table(table_of(results_of())).c_str(), stdout);
+  print_table(table_of(results_of()), "compare.md");
+  print_text(warnings_note(outcome.results));
   std::printf("%s/compare.md, .csv, .svg\n", study.directory.c_str());
   return outcome.exit_code;
 }

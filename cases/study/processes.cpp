@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <ctime>
@@ -131,6 +132,12 @@ bool run_children(const std::vector<Child>& children, int jobs, const ChildLimit
       at = running.erase(at);
       any = true;
       observer.ended(child.location, ending_of(status, usage, child));
+    }
+    if (observer.waiting && !running.empty()) {
+      std::vector<size_t> locations;
+      for (const auto& [pid, child] : running) locations.push_back(child.location);
+      std::sort(locations.begin(), locations.end());
+      observer.waiting(locations);
     }
     if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }

@@ -42,6 +42,8 @@ struct Child {
 struct ChildObserver {
   std::function<void(size_t)> started = {};          ///< Callback at the start; may be empty.
   std::function<void(size_t, const Ending&)> ended;  ///< Callback at the end.
+  /// Callback with the children that run, called again and again; may be empty.
+  std::function<void(const std::vector<size_t>&)> waiting = {};
 };
 
 /// Runs children in the given order, up to `jobs` at the same time. After SIGINT or SIGTERM, every

@@ -40,8 +40,10 @@ Child child_of(const StudyOptions& options, const Variant& variant) {
   const std::string folder = folder_of(options, variant);
   Child out;
   out.log = folder + ".log";
-  out.words = {"run",       case_name_of(options, variant), "-o", folder, "--quiet",
+  out.words = {"run",       case_name_of(options, variant), "-o", folder,
                "--threads", io::to_text(options.threads)};
+  // Failures that are results are read from the log, which then contains nothing else.
+  if (options.quiet || options.keeps_failures) out.words.emplace_back("--quiet");
   out.words.insert(out.words.end(), options.arguments.begin(), options.arguments.end());
   // A killed run of the same case is resumed. If the case was changed, a new run starts, and the
   // old folder is moved.
@@ -53,10 +55,11 @@ Child child_of(const StudyOptions& options, const Variant& variant) {
   return out;
 }
 
+constexpr std::chrono::seconds kBetweenProgress(20);  // time between lines about running variants
+
 void say(const StudyOptions& options, const std::string& line) {
   if (options.quiet) return;
-  std::printf("%s\n", line.c_str());
-  std::fflush(stdout);
+  print_text(line);
 }
 
 /// Returns the result of a run that has just ended. A run without a status of its own has failed.
@@ -98,6 +101,17 @@ std::string last_text(const std::string& words) {
     if (line.starts_with(kProgram)) complaint = line.substr(std::string(kProgram).size());
   }
   return complaint.empty() ? last : complaint;
+}
+
+std::string completed_text(const std::string& log) {
+  constexpr const char* kShare = " % of the run";  // as class Progress writes it
+  std::istringstream in(log);
+  std::string words;
+  for (std::string word; in >> word;) words += (words.empty() ? "" : " ") + word;
+  const size_t end = words.rfind(kShare);
+  if (end == std::string::npos) return "0 %";
+  const size_t begin = words.find_last_of(" ", end - 1) + 1;
+  return words.substr(begin, end - begin) + " %";
 }
 
 io::CaseFile case_of(const StudyOptions& options, const Variant& variant) {
@@ -177,11 +191,25 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
     changed(out.results);
   };
   const auto started = [&](size_t at) { say(options, variants[wanted[at]].name + ": started"); };
+  auto shown = begin;
+  const auto waiting = [&](const std::vector<size_t>& running) {
+    const auto now = std::chrono::steady_clock::now();
+    if (options.quiet || now - shown < kBetweenProgress) return;
+    shown = now;
+    std::string words;
+    for (const size_t at : running)
+      words += (words.empty() ? "running: " : ", ") + variants[wanted[at]].name + " " +
+               completed_text(text_of(children[at].log));
+    say(options, words);
+  };
   const ChildLimits limits{.seconds = options.time_limit, .memory = options.memory_limit};
-  const bool whole =
-      run_children(children, options.jobs, limits, {.started = started, .ended = collect});
+  const bool whole = run_children(children, options.jobs, limits,
+                                  {.started = started, .ended = collect, .waiting = waiting});
   changed(out.results);
-  if (!whole) out.exit_code = 4;
+  if (!whole) {
+    out.exit_code = 4;
+    say(options, "interrupted: the same command continues the study in " + options.directory);
+  }
   return out;
 }
 

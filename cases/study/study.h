@@ -97,7 +97,7 @@ struct VariantResult {
 
   std::vector<BodyResult> bodies;  ///< Results of the designed bodies.
 
-  int warnings = 0;  ///< Number of warnings of the run.
+  std::vector<std::string> warnings;  ///< Warnings of the run.
 
   /// Tells whether the run is complete.
   bool done() const { return status.starts_with("done"); }
@@ -112,6 +112,18 @@ struct VariantResult {
 /// Returns the paragraph on unfinished runs that follows the tables of a study; empty if all runs
 /// are finished.
 std::string convergence_note(std::span<const VariantResult> runs);
+
+/// Returns the warnings of all runs for the screen, one paragraph each, with the name of the run in
+/// front; empty if there are none. Of many warnings the first kMaxWarnings are given.
+std::string warnings_note(std::span<const VariantResult> runs);
+inline constexpr size_t kMaxWarnings =
+    20;  ///< Largest number of warnings of a study on the screen.
+
+/// Prints a text on the screen, with lines that are not longer than the screen is wide.
+void print_text(const std::string& text);
+/// Prints the rows of a table, with those columns that the screen can show (io::fitted_table()).
+/// @param file  file that has all columns
+void print_table(std::span<const std::vector<std::string>> rows, const std::string& file);
 
 /// Reads the case of every variant and builds its model as a run would do.
 /// @throws Error (input) as a run would; no file has been written then.
@@ -148,6 +160,9 @@ VariantResult read_result(const StudyOptions& options, const Variant& variant);
 /// Returns the last error message in the terminal output of a run: the first line of the message,
 /// without the name of the program. Without an error message, it returns the last line.
 std::string last_text(const std::string& words);
+
+/// Returns the completed part of a run from its terminal output so far, such as "12 %".
+std::string completed_text(const std::string& log);
 
 /// Returns the text of a file; empty if the file cannot be read.
 std::string text_of(const std::string& path);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "cases/study/statistics.h"
 #include "cases/study/study.h"
 #include "io/output_folder.h"
+#include "io/screen.h"
 #include "io/tables.h"
 #include "optim/optimizer.h"
 
@@ -118,7 +120,8 @@ void read_run(const std::string& text, VariantResult& out) {
     throw Error::input(out.directory + "/run.json: this file is not the result of a run");
   out.status = run.value("status", "missing");
   out.message = run.value("message", "");
-  out.warnings = static_cast<int>(run.value("warnings", nlohmann::json::array()).size());
+  for (const nlohmann::json& each : run.value("warnings", nlohmann::json::array()))
+    if (each.is_string()) out.warnings.push_back(each);
   out.seconds_cpu = number(run, "seconds_cpu");
   out.seconds_wall = number(run, "seconds_wall");
   out.peak_memory_bytes = number(run, "peak_memory_bytes");
@@ -165,10 +168,31 @@ std::string convergence_note(std::span<const VariantResult> runs) {
          "limit.\n";
 }
 
+std::string warnings_note(std::span<const VariantResult> runs) {
+  std::string out;
+  size_t n = 0;
+  for (const VariantResult& run : runs)
+    for (const std::string& warning : run.warnings)
+      if (++n <= kMaxWarnings) out += run.name + ": " + warning + "\n";
+  if (n > kMaxWarnings)
+    out +=
+        std::to_string(n - kMaxWarnings) + " more warnings: run.json in the folders of the runs\n";
+  return out.empty() ? out : "\nwarnings\n" + out;
+}
+
+void print_text(const std::string& text) {
+  std::fputs(io::fitted_text(text, io::screen_width()).c_str(), stdout);
+  std::fflush(stdout);
+}
+
+void print_table(std::span<const std::vector<std::string>> rows, const std::string& file) {
+  print_text(io::fitted_table(rows, io::screen_width(), file));
+}
+
 std::string VariantResult::words() const {
   const std::string found = verdicts();
   return status + (done() && !found.empty() ? ", " + found : "") +
-         counted(static_cast<size_t>(warnings), "warning", "warnings");
+         counted(warnings.size(), "warning", "warnings");
 }
 
 std::string text_of(const std::string& path) {

@@ -198,11 +198,11 @@ int sweep_case(const SweepOptions& options) {
                        ": the index of a variant is 1 to " + std::to_string(count));
   if (options.list) {
     for (int k = 0; k < count; ++k) {
-      std::printf("%d", k + 1);
       const Variant& one = sweep.variants[static_cast<size_t>(k)];
-      if (!one.case_name.empty()) std::printf(" case=%s", one.case_name.c_str());
-      for (const std::string& each : one.overrides) std::printf(" %s", each.c_str());
-      std::printf("\n");
+      std::string line = std::to_string(k + 1);
+      if (!one.case_name.empty()) line += " case=" + one.case_name;
+      for (const std::string& each : one.overrides) line += " " + each;
+      print_text(line);
     }
     return 0;
   }
@@ -229,8 +229,9 @@ int sweep_case(const SweepOptions& options) {
   const StudyOutcome outcome = run_variants(
       study, sweep.variants,
       [&](std::span<const VariantResult> runs) { write_all(sweep, runs, study.directory); });
-  std::fputs(io::aligned_table(summary_of(sweep, outcome.results)).c_str(), stdout);
-  std::fputs(convergence_note(outcome.results).c_str(), stdout);
+  print_table(summary_of(sweep, outcome.results), "sweep.md");
+  print_text(warnings_note(outcome.results));
+  print_text(convergence_note(outcome.results));
   std::printf("%s/sweep.md, .csv, .svg\n", study.directory.c_str());
   return outcome.exit_code;
 }

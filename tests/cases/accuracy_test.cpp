@@ -12,6 +12,7 @@
 
 #include "cases/accuracy/recommendation.h"
 #include "cases/accuracy/report.h"
+#include "cases/assembly/resource_estimate.h"
 #include "cases/check/ready.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
@@ -24,13 +25,14 @@ using test::Words;
 
 const std::vector<double> kHalves = {4, 2, 1, 0.5, 0.25};
 
-TEST(Budget, ReadsTimes) {
-  EXPECT_EQ(read_budget("120s"), 120);
-  EXPECT_EQ(read_budget("90"), 90);
-  EXPECT_EQ(read_budget("2min"), 120);
-  EXPECT_EQ(read_budget("1.5h"), 5400);
+TEST(Duration, IsReadWithItsUnit) {
+  EXPECT_EQ(read_duration("--budget", "120s"), 120);
+  EXPECT_EQ(read_duration("--budget", "90"), 90);
+  EXPECT_EQ(read_duration("--budget", "2min"), 120);
+  EXPECT_EQ(read_duration("--budget", "1.5h"), 5400);
+  EXPECT_EQ(read_duration("--budget", "30d"), 30 * 24 * 3600);
   for (const char* bad : {"", "s", "-1s", "0", "1,5s", "2 days", "inf", "nan"})
-    EXPECT_THROW(read_budget(bad), Error) << bad;
+    EXPECT_THROW(read_duration("--budget", bad), Error) << bad;
 }
 
 /// Refinement series whose runs take prescribed times.

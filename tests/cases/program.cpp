@@ -1,6 +1,9 @@
 #include "tests/cases/program.h"
 
+#include <algorithm>
 #include <sstream>
+
+#include "io/screen.h"
 
 namespace flexmorph::test {
 
@@ -27,8 +30,45 @@ ChildProgram start(const Scratch& scratch, const Words& arguments) {
   return ::testing::AssertionFailure() << "exit code " << ended.code << "\n" << ended.err << run;
 }
 
+Words wide_lines(const std::string& text) {
+  Words out;
+  for (const std::string& line : lines_of(text)) {
+    const size_t first = std::min(line.size(), line.find_first_not_of(' '));
+    if (io::columns_of(line) > io::kColumnsOfFiles && line.find(' ', first) != std::string::npos)
+      out.push_back(line);
+  }
+  return out;
+}
+
+std::string in_whole_lines(const std::string& text) {
+  std::string out;
+  size_t columns = 0;  // of the last line as the program has written it
+  for (const std::string& line : lines_of(text)) {
+    const size_t first = std::min(line.size(), line.find_first_not_of(' ')),
+                 end = std::min(line.size(), line.find(' ', first));
+    const bool continues =
+        first > 0 && first < line.size() &&
+        columns + 1 + io::columns_of(line.substr(first, end - first)) > io::kColumnsOfFiles;
+    if (continues && !out.empty()) {
+      out.back() = ' ';
+      out += line.substr(first) + "\n";
+    } else {
+      out += line + "\n";
+    }
+    columns = io::columns_of(line);
+  }
+  return out;
+}
+
 Ended flexmorph(const Scratch& scratch, const Words& arguments) {
-  return start(scratch, arguments).end();
+  Ended out = start(scratch, arguments).end();
+  const auto has = [&](const char* word) {
+    return std::find(arguments.begin(), arguments.end(), word) != arguments.end();
+  };
+  if (has("keys") || has("--explain")) return out;
+  out.out = in_whole_lines(out.out);
+  out.err = in_whole_lines(out.err);
+  return out;
 }
 
 namespace {

@@ -33,7 +33,16 @@ inline constexpr int kTooFew = 5;
 /// design of few iterations is better than uniform material.
 ::testing::AssertionResult is_done(const Ended& ended, const std::string& folder);
 
-/// Runs the program with the given arguments until it ends.
+/// Returns the lines of a text that are longer than 80 columns, except for single words, such as
+/// paths.
+Words wide_lines(const std::string& text);
+
+/// Returns a text of the program with the lines that it splits at 80 columns in one piece: a line
+/// that begins with spaces continues the line before if its first word did not fit there.
+std::string in_whole_lines(const std::string& text);
+
+/// Runs the program with the given arguments until it ends. Its output is given in whole lines,
+/// except for the tables of `keys` and for cases with --explain.
 Ended flexmorph(const Scratch& scratch, const Words& arguments);
 
 /// Runs a case with changes. Its table [expect] is removed if there are changes, because it holds

@@ -26,6 +26,13 @@ list(GET rows -1 last)
 string(REPLACE "," ";" last "${last}")
 list(GET last ${at} expected)
 string(SUBSTRING "${expected}" 0 8 expected)
+# A template with a name that does not exist in the source tree is a kind of its own.
+file(RENAME "${WORK}/moved/share/flexmorph/cases/templates/arm.toml"
+            "${WORK}/moved/share/flexmorph/cases/templates/moved-arm.toml")
+execute_process(COMMAND "${WORK}/moved/bin/flexmorph" new my_arm --kind moved-arm
+                WORKING_DIRECTORY "${WORK}" OUTPUT_QUIET ${stop})
+execute_process(COMMAND "${WORK}/moved/bin/flexmorph" check my_arm.toml
+                WORKING_DIRECTORY "${WORK}" OUTPUT_QUIET ${stop})
 foreach(kind static shared)
   set(build "${WORK}/build-${kind}")
   set(is_shared OFF)

@@ -2,8 +2,8 @@
 
     xvfb-run -a pvpython check_run.py RUN [PICTURES]
 
-Shows that every frame of design/iterations.pvd, design/components.pvd and motion/motion.pvd can be
-read, as far as the run has them: a design where there is a history.csv, a motion where there is a
+Shows that every frame of design/iterations.pvd, design/fields.pvd, design/components.pvd and
+motion/motion.pvd can be read, as far as the run has them: a design where there is a history.csv, a motion where there is a
 motion.csv, a path of equilibria where there is a path.csv. The design has one frame per row of
 history.csv, the motion starts and ends with its table; fields have their names, finite values, and
 densities in [0, 1]; and both can be drawn: PICTURES/design.png and PICTURES/motion.png (default:
@@ -23,7 +23,8 @@ import numpy
 from paraview import servermanager, simple
 from paraview.vtk.numpy_interface import dataset_adapter
 
-DESIGN = {"CellData": {"density", "stiffness_factor", "strain_energy"}, "PointData": {"tdf"}}
+DESIGN = {"CellData": {"density"}, "PointData": {"tdf"}}
+FIELDS = {"CellData": {"stiffness_factor", "strain_energy"}, "PointData": {"displacement"}}
 OUTLINES = {"CellData": {"component"}}
 MOTION = {
     "CellData": {"density", "strain_energy", "body"},
@@ -171,12 +172,16 @@ def draw(layers, time, path):
 
 def check_design(run, pictures, fields):
     design, iterations = open_series(run, "design/iterations.pvd", fields)
+    _, field_times = open_series(run, "design/fields.pvd", FIELDS)
     outlines, outline_times = open_series(run, "design/components.pvd", OUTLINES)
     history = column(os.path.join(run, "history.csv"), "iteration")
     if history is not None:
         rows = len(history)
         expect(len(iterations) == rows, "%d designs, %d rows" % (len(iterations), rows))
-    expect(outline_times == iterations, "outlines and designs have different times")
+    expect(outline_times == field_times, "outlines and fields have different times")
+    expect(set(field_times) <= set(iterations), "fields have times without a design")
+    last = field_times and iterations and field_times[-1] == iterations[-1]
+    expect(last, "the last design has no fields")
     if design and outlines and iterations:
         layers = [(design, "density"), (outlines, [0.8, 0.1, 0.1])]
         draw(layers, iterations[-1], os.path.join(pictures, "design.png"))

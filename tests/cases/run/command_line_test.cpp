@@ -100,8 +100,9 @@ TEST(CommandLine, ListsTheShippedCases) {
 TEST(CommandLine, EveryShippedCaseChecks) {
   const Scratch scratch;
   for (const std::string& name : shipped_names(flexmorph(scratch, {"cases"}).out)) {
-    const Ended ended = flexmorph(scratch, {"check", name});
+    const Ended ended = start(scratch, {"check", name}).end();
     EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(wide_lines(ended.out), Words{}) << name;
     EXPECT_TRUE(contains(ended.out, "\nactive\n"));
     EXPECT_TRUE(contains(ended.out, "\nabsent"));
   }

@@ -14,6 +14,7 @@
 #include "io/tables.h"
 #include "tests/cases/program.h"
 #include "tests/cases/run_json.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::test {
 namespace {
@@ -121,6 +122,7 @@ TEST(Run, WritesItsFolder) {
                            "motion_uniform.csv",
                            "design/iterations.pvd",
                            "design/components.pvd",
+                           "design/fields.pvd",
                            "motion/motion.pvd",
                            "loads/plate.csv",
                            "plots/convergence_plate.svg",
@@ -142,9 +144,10 @@ TEST(Run, WritesItsFolder) {
   const Table history = read_csv(folder + "/history.csv");
   expect_history(history);
   EXPECT_EQ(history.size(), 7u);
-  for (const char* series : {"iterations", "components"}) {
-    const std::string index = contents_of(folder + "/design/" + series + ".pvd");
-    EXPECT_EQ(count(index, "<DataSet "), 6) << index;
+  for (const auto& [series, frames] :
+       {std::pair{"iterations", 6}, std::pair{"fields", 1}, std::pair{"components", 1}}) {
+    const std::string index = contents_of(folder + "/design/" + std::string(series).append(".pvd"));
+    EXPECT_EQ(count(index, "<DataSet "), frames) << index;
   }
   // Plate, hub and point mass at 0, .04, .08, .12 s.
   EXPECT_EQ(count(contents_of(folder + "/motion/motion.pvd"), "<DataSet "), 12);
@@ -336,6 +339,11 @@ TEST(Run, AnInterruptionKeepsWhatWasComputed) {
   EXPECT_EQ(ended.code, 4) << ended.err;
   const json run = run_json(folder);
   EXPECT_EQ(run["status"], "interrupted");
+  // The last line is the end of a command that a shell can read, which continues the run.
+  const std::string said =
+      ended.out.substr(std::min(ended.out.size(), ended.out.rfind("flexmorph run")));
+  EXPECT_TRUE(testing::mentions_all(said, {FLEXMORPH_SHORT_CASE, "--set optimizer.kkt_tolerance=0",
+                                           "-o " + folder, "--resume\n"}));
   const Table history = read_csv(folder + "/history.csv");
   expect_history(history);
   const std::string index = contents_of(folder + "/design/iterations.pvd");

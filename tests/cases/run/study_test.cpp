@@ -15,6 +15,7 @@
 #include "io/tables.h"
 #include "tests/cases/program.h"
 #include "tests/cases/run_json.h"
+#include "tests/support/errors.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -277,7 +278,8 @@ TEST(Compare, MakesATableOfOptimizersFromTheSameStarts) {
   // The optimizers cannot converge within eight solves.
   EXPECT_NE(contents_of(folder + "/compare.md").find("| mma | 2/2 | 0/2 |"), std::string::npos);
   EXPECT_EQ(lines_with(contents_of(folder + "/compare.md"), ", unfinished"), 4U);
-  EXPECT_EQ(test::lines_of(ended.out).size(), 6U) << ended.out;
+  EXPECT_TRUE(
+      testing::mentions_all(ended.out, {"optimizer", "mma", "ipopt", "4 of 4", "compare.md"}));
 
   // The figure of merit follows from the other columns.
   const auto figure = table.numbers("figure"), verified = table.numbers("body_fitted"),
