@@ -1,12 +1,11 @@
 #include "io/part_picture.h"
 
-#include <vtkBase64Utilities.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "geometry/text.h"
+#include "io/encodings.h"
 #include "io/files.h"
 #include "io/png.h"
 #include "io/tables.h"
@@ -102,14 +101,6 @@ class Painter {
   Vec2 corner_{0, 0};  // upper left corner [m]
   Pixels out_;
 };
-
-std::string base64(const std::string& bytes) {
-  std::string out(2 * bytes.size() + 4, '\0');
-  const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
-  out.resize(
-      vtkBase64Utilities::Encode(from, bytes.size(), reinterpret_cast<unsigned char*>(out.data())));
-  return out;
-}
 
 std::string number(double value) { return to_text(value, 3); }
 

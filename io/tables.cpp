@@ -12,22 +12,6 @@
 #include "geometry/base.h"
 
 namespace flexmorph::io {
-namespace {
-
-std::string html_table(const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<div class=\"wide\"><table>\n";
-  for (size_t i = 0; i < rows.size(); ++i) {
-    const std::string tag = i == 0 ? "th" : "td";
-    out += "<tr>";
-    for (const std::string& cell : rows[i])
-      out += "<" + tag + ">" + xml_escaped(cell) + "</" + tag + ">";
-    out += "</tr>\n";
-  }
-  return out + "</table></div>\n";
-}
-
-}  // namespace
-
 Cell::Cell(std::string text) : text_(std::move(text)) {
   if (text_.find_first_of(",\"\r\n") == std::string::npos) return;
   std::string quoted = "\"";
@@ -103,33 +87,6 @@ void CsvWriter::write(const std::string& line) {
     if (n > 0) done += static_cast<size_t>(n);
   }
   size_ += static_cast<off_t>(line.size());
-}
-
-std::string report_html(const std::string& title, std::span<const ReportSection> sections) {
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-      xml_escaped(title) +
-      "</title>\n<style>\n"
-      "body { font: 15px/1.5 sans-serif; color: #222; max-width: 60em; margin: 2em auto; "
-      "padding: 0 1em; }\n"
-      "h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }\n"
-      "table { border-collapse: collapse; } th, td { padding: .2em .9em .2em 0; text-align: left; "
-      "border-bottom: 1px solid #ddd; font-variant-numeric: tabular-nums; }\n"
-      ".wide { overflow-x: auto; }\n"
-      ".warning { border-left: .3em solid #d80; padding-left: .8em; }\n"
-      "svg { max-width: 100%; height: auto; display: block; margin: 1em 0; }\n"
-      "</style>\n</head>\n<body>\n<h1>" +
-      xml_escaped(title) + "</h1>\n";
-  for (const ReportSection& section : sections) {
-    if (!section.heading.empty()) out += "<h2>" + xml_escaped(section.heading) + "</h2>\n";
-    if (!section.words.empty()) out += "<p>" + xml_escaped(section.words) + "</p>\n";
-    for (const std::string& each : section.warnings)
-      out += "<p class=\"warning\">" + xml_escaped(each) + "</p>\n";
-    if (!section.rows.empty()) out += html_table(section.rows);
-    for (const std::string& picture : section.pictures) out += picture.substr(picture.find("<svg"));
-  }
-  return out + "</body>\n</html>\n";
 }
 
 std::string xml_escaped(const std::string& text) {

@@ -110,19 +110,6 @@ std::string aligned_table(std::span<const std::vector<std::string>> rows);
 /// Returns rows as a Markdown table; the first row is the header.
 std::string markdown_table(std::span<const std::vector<std::string>> rows);
 
-/// One section of a report. Members that are empty are omitted.
-struct ReportSection {
-  std::string heading = {}, words = {};    ///< Heading, and text below it.
-  std::vector<std::string> warnings = {};  ///< Warnings, which are highlighted.
-
-  /// Rows of a table; the first one is the header.
-  std::vector<std::vector<std::string>> rows = {};
-  std::vector<std::string> pictures = {};  ///< Pictures as SVG text, see plots.h.
-};
-
-/// Returns a report as a page that needs no other file (.html).
-std::string report_html(const std::string& title, std::span<const ReportSection> sections);
-
 /// Returns a text with escaped characters for the contents and attributes of XML and HTML.
 std::string xml_escaped(const std::string& text);
 

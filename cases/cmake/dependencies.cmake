@@ -112,6 +112,17 @@ if(OCCT_FOUND)
 endif()
 flexmorph_library(OCCT 7.6 OCCT_FOUND)
 
+# The library of plots in pages may be absent: its script, its style and its licence.
+find_file(DYGRAPHS_js dygraph.min.js PATHS /usr/share/javascript/dygraphs NO_DEFAULT_PATH)
+find_file(DYGRAPHS_css dygraph.min.css PATHS /usr/share/javascript/dygraphs NO_DEFAULT_PATH)
+find_file(DYGRAPHS_txt copyright PATHS /usr/share/doc/libjs-dygraphs NO_DEFAULT_PATH)
+foreach(kind js css txt)
+  # Nothing of the library is used without its licence.
+  if(NOT DYGRAPHS_js OR NOT DYGRAPHS_css OR NOT DYGRAPHS_txt)
+    set(DYGRAPHS_${kind} "")
+  endif()
+endforeach()
+
 # Libraries for tests only. Without GoogleTest there are no tests; other missing libraries leave out
 # the tests that need them: CalculiX solves exported designs, valijson (headers only) checks cases
 # against their schema, IDA of SUNDIALS integrates scenes. The package file of SUNDIALS would

@@ -22,6 +22,8 @@ class BodyShapes {
   bool is_designed(size_t body) const { return design_of(body) < scene_.designs.size(); }
   /// Returns the grid of the design of a body.
   const Grid& grid_of(size_t body) const { return scene_.designs[design_of(body)].grid; }
+  /// Returns the pose of an undeformed body at the start.
+  const fem::ReferencePose& pose_of(size_t body) const { return poses_[body]; }
   /// Returns the deformed surface of a body with a design, with one quad per cell.
   DesignedSurface designed(const StepRecord& step, size_t body) const;
   /// Returns the deformed mid-surface of a body without a design.

@@ -114,16 +114,39 @@ class RunFolder {
     /// residual [-]; and of crisp evaluations: number of the row, compliance of the crisp design
     /// [J].
     std::vector<double> row, compliance, volume, kkt, crisp_row, crisp_compliance;
+
+    /// Components of every iteration, with their parameters one after the other; empty for
+    /// iterations of the run that this one continues.
+    std::vector<std::vector<float>> components;
+    double min_half_thickness = 0;  ///< Lower bound of the half-thickness of components [m].
+
+    /// Polygons of the solid and of the void passive regions [m].
+    std::vector<std::vector<Vec2>> solid, empty;
   };
   /// Returns the histories of all designed bodies.
   const std::vector<History>& histories() const { return histories_; }
 
-  /// Outlines of the design of one body as SVG.
+  /// Outlines of the design of one body.
   struct DesignPictures {
-    std::string body, start, result;  ///< Body; initial layout and latest result; empty: none.
+    /// Name of the body; initial layout and latest result as SVG, empty if there is none.
+    std::string body, start, result;
+    std::vector<Region> outline;  ///< Outline of the latest result [m].
   };
   /// Returns the outlines of all designed bodies.
   const std::vector<DesignPictures>& design_pictures() const { return pictures_; }
+
+  /// The equivalent static loads of one body: a value per load set.
+  struct LoadSets {
+    std::string body;  ///< Name of the body.
+
+    /// Times [s], strain energies of the motion [J], and ratios of the strain energy of the static
+    /// displacements to that of the motion [-]; no ratios before a design exists.
+    std::vector<double> time, strain_energy, energy_ratio;
+  };
+  /// Returns the latest equivalent static loads of all designed bodies.
+  const std::vector<LoadSets>& load_sets() const { return load_sets_; }
+  /// Returns the names of all files of the run so far.
+  std::vector<std::string> files() { return folder_.files(); }
 
   /// Saves or restores the list of frames of a motion; when restored, their index is written again.
   void archive_frames(Archive& memory);
@@ -190,6 +213,7 @@ class RunFolder {
   std::deque<std::vector<std::string>> old_rows_;    // remaining rows of a continued history
   std::vector<std::vector<std::string>> kept_rows_;  // rows of a continued history that are kept
   std::vector<DesignPictures> pictures_;
+  std::vector<LoadSets> load_sets_;
   int rows_ = 0, motion_frames_ = 0;
   std::vector<io::SurfaceFrame> shapes_;
   std::vector<std::pair<std::string, double>> phases_;  // name and CPU time [s]

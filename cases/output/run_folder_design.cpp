@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "cases/output/run_folder.h"
 #include "cases/results/schema.h"
 #include "geometry/parts/outline_curves.h"
@@ -55,9 +57,15 @@ void RunFolder::write_loads(const std::string& body, const fem::EslSets& loads,
   const std::vector<std::string> columns = {"time",          "root_column",  "weight",
                                             "strain_energy", "energy_ratio", "compliance",
                                             "force_x",       "force_y"};
+  const auto known = std::find_if(load_sets_.begin(), load_sets_.end(),
+                                  [&](const LoadSets& each) { return each.body == body; });
+  LoadSets& kept = known != load_sets_.end() ? *known : load_sets_.emplace_back();
+  kept = {body, {}, {}, outcome ? outcome->energy_ratios : std::vector<double>()};
   io::CsvWriter csv(folder_.file("loads/" + body + ".csv"), columns);
   for (size_t i = 0; i < loads.sets.size(); ++i) {
     const fem::EslSet& s = loads.sets[i];
+    kept.time.push_back(s.time);
+    kept.strain_energy.push_back(s.strain_energy);
     Vec2 force(0, 0);
     for (const fem::NodalForce& f : s.forces) force += f.force;
     io::Cell ratio, compliance;
@@ -121,6 +129,7 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
                 " was not written, because OpenCASCADE cannot make a solid of the outline: " + why;
   if (!scene_.output.plots) return;
   pictures_of(problem.body).result = io::outline_svg(regions, frame, 5);
+  pictures_of(problem.body).outline = regions;
   const auto& crisp = outcome.crisp.fractions;
   io::write_png(folder_.file("plots/design" + stem + ".png"), problem.grid,
                 {crisp.data(), static_cast<size_t>(crisp.size())});

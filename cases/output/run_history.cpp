@@ -152,6 +152,7 @@ void RunFolder::keep_row(const mmc::RowOfHistory& row, const std::vector<std::st
   h.compliance.push_back(number("compliance"));
   h.volume.push_back(number("volume"));
   h.kkt.push_back(number("kkt"));
+  h.components.emplace_back();
   if (const double crisp = number("crisp_compliance"); std::isfinite(crisp)) {
     h.crisp_row.push_back(h.row.back());
     h.crisp_compliance.push_back(crisp);
@@ -217,6 +218,20 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
   });
 }
 
+namespace {
+
+/// Adds the components of an iteration to the history of its body.
+void keep_components(const mmc::IterationReport& r, RunFolder::History& h) {
+  h.min_half_thickness = r.problem.bands.back().min_half_thickness;
+  h.solid = r.problem.solid;
+  h.empty = r.problem.empty;
+  std::vector<float>& out = h.components.emplace_back();
+  for (const Component& c : r.state.components())
+    for (const double p : c.parameters()) out.push_back(static_cast<float>(p));
+}
+
+}  // namespace
+
 void RunFolder::add_iteration(const mmc::IterationReport& r) {
   if (!old_rows_.empty()) forget_old_rows();
   ++rows_;
@@ -226,6 +241,7 @@ void RunFolder::add_iteration(const mmc::IterationReport& r) {
   h.compliance.push_back(r.state.compliance());
   h.volume.push_back(r.state.volume());
   h.kkt.push_back(r.iterate.kkt);
+  keep_components(r, h);
   if (r.crisp) {
     h.crisp_row.push_back(h.row.back());
     h.crisp_compliance.push_back(r.crisp->compliance);

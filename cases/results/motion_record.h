@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cases/results/animation.h"
 #include "cases/results/series.h"
 #include "fem/dynamics/motion.h"
 #include "fem/solve/statics.h"
@@ -31,6 +32,7 @@ inline const std::string kAcrossEnding = "_across";
 struct MotionRecord {
   Series table;                           ///< Table with the columns of MotionColumns.
   std::vector<io::PlaneFrame> snapshots;  ///< Pictures of the mechanism.
+  Animation animation;                    ///< Frames for the animation of the report.
   std::vector<std::string> remarks;       ///< Remarks on a start that differs from the case.
   fem::MotionResult result;               ///< Counts, drifts and events of the time integration.
 

@@ -10,38 +10,21 @@ namespace {
 /// Returns a message on the mass of all designs, or on their volume fractions if they have no
 /// density.
 std::string mass_text(const DesignResult& design) {
-  double mass = 0;
+  const double mass = mass_of(design);
+  if (mass > 0) return "mass " + io::to_text(mass, 4) + " kg";
   std::string volumes;
-  for (const mmc::BodyProblem& problem : design.problems)
-    for (const mmc::BodyOutcome& outcome : design.outcomes)
-      if (outcome.body == problem.body) {
-        mass += outcome.crisp.volume * mmc::full_mass_of(problem);
-        volumes +=
-            (volumes.empty() ? "volume fraction " : " and ") + io::to_text(outcome.crisp.volume, 4);
-      }
-  return mass > 0 ? "mass " + io::to_text(mass, 4) + " kg" : volumes;
+  for (const mmc::BodyOutcome& outcome : design.outcomes)
+    volumes +=
+        (volumes.empty() ? "volume fraction " : " and ") + io::to_text(outcome.crisp.volume, 4);
+  return volumes;
 }
 
-std::string gain(double designed, double uniform) {
-  const double change = 100 * (designed / uniform - 1);
-  return io::to_text(std::abs(change), 3) + (change < 0 ? " % below" : " % above") +
-         " uniform material of equal mass";
-}
-
-/// Returns a message that compares the designs with uniform material, in the motion or under the
-/// loads of a static plate.
+/// Returns a message that compares the designs with uniform material.
 std::string gain_text(const RunResult& result) {
-  const std::optional<MotionRecord>&motion = result.motions.assessed(),
-        &uniform = result.motions.assessed_uniform();
-  if (motion && uniform)
-    return "time integral of the strain energy " +
-           gain(motion->strain_integral(), uniform->strain_integral());
-  double designed = 0, even = 0;
-  for (const mmc::BodyOutcome& outcome : result.design.outcomes) {
-    designed += outcome.crisp.compliance;
-    even += outcome.uniform_compliance;
-  }
-  return even > 0 ? "compliance " + gain(designed, even) : "";
+  const std::optional<Gain> gain = gain_of(result);
+  if (!gain) return "";
+  return gain->quantity + " " + io::to_text(std::abs(100 * gain->change()), 3) +
+         (gain->change() < 0 ? " % below" : " % above") + " uniform material of equal mass";
 }
 
 std::string verdict_text(const DesignResult& design) {
@@ -73,6 +56,29 @@ std::optional<PointVariation> column_variation(const MotionResults& motions,
 }
 
 }  // namespace
+
+double mass_of(const DesignResult& design) {
+  double out = 0;
+  for (const mmc::BodyProblem& problem : design.problems)
+    for (const mmc::BodyOutcome& outcome : design.outcomes)
+      if (outcome.body == problem.body) out += outcome.crisp.volume * mmc::full_mass_of(problem);
+  return out;
+}
+
+std::optional<Gain> gain_of(const RunResult& result) {
+  const std::optional<MotionRecord>&motion = result.motions.assessed(),
+        &uniform = result.motions.assessed_uniform();
+  if (motion && uniform && !result.design.outcomes.empty())
+    return Gain{"time integral of the strain energy", motion->strain_integral(),
+                uniform->strain_integral()};
+  Gain out{"compliance"};
+  for (const mmc::BodyOutcome& outcome : result.design.outcomes) {
+    out.designed += outcome.crisp.compliance;
+    out.uniform += outcome.uniform_compliance;
+  }
+  if (!(out.uniform > 0)) return {};
+  return out;
+}
 
 std::optional<PointVariation> tip_variation(const MotionResults& motions, const std::string& body) {
   return column_variation(motions, body + kDeflectionEnding, "");

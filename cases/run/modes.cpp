@@ -5,6 +5,8 @@
 
 #include "cases/check/ready.h"
 #include "cases/output/kept_case.h"
+#include "cases/output/page/html.h"
+#include "cases/output/page/page.h"
 #include "cases/output/surface.h"
 #include "cases/results/mode_table.h"
 #include "cases/scene/elements/row.h"
@@ -155,10 +157,12 @@ void write_json(const Scene& scene, const ModeTable& table, RunFolder& folder) {
 
 void write_report(const Scene& scene, const ModeTable& table, const std::string& heading,
                   RunFolder& folder) {
-  std::string words;
-  for (const std::string& each : mode_remarks(table)) words += (words.empty() ? "" : ". ") + each;
-  const io::ReportSection section{.heading = heading, .words = words, .rows = mode_rows(table)};
-  folder.write_text("report.html", io::report_html(scene.title, {&section, 1}));
+  Page page;
+  page.title = scene.title;
+  page.status = "done";
+  for (const std::string& each : mode_remarks(table)) page.notes.push_back(each + ".");
+  page.sections.push_back({"modes", heading, text_table(mode_rows(table))});
+  folder.write_text("report.html", page_html(page));
 }
 
 std::string directory_of(const ModesOptions& options, const Scene& scene) {

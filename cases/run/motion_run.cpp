@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cases/output/animation_writer.h"
 #include "cases/output/motion_checkpoint.h"
 #include "cases/output/motion_frames.h"
 #include "cases/results/failure.h"
@@ -89,6 +90,7 @@ class StepSequence {
     record.table = Series(columns_.columns());
     write<SeriesWriter>(record.table);
     if (request.snapshots > 0) write<SnapshotWriter>(shapes_, request.snapshots, record.snapshots);
+    if (request.animated > 0) write<AnimationWriter>(shapes_, request.animated, record.animation);
     if (folder) write<TableWriter>(folder->file(request.table), record.table);
     if (request.loads)
       write<LoadCollector>(scene, std::span<const fem::MovingRoot>(mechanism.moving_roots),
@@ -142,9 +144,9 @@ std::string bytes_of(const MotionRequest& request) {
   MeshChoice mesh = request.mesh;
   bool loads = request.loads, balance = request.balance, condition = request.condition;
   double every = request.frames_every;
-  int snapshots = request.snapshots;
+  int snapshots = request.snapshots, animated = request.animated;
   std::optional<double> step = request.step;
-  m(mesh.elements, mesh.refine, step, loads, balance, condition, every, snapshots);
+  m(mesh.elements, mesh.refine, step, loads, balance, condition, every, snapshots, animated);
   for (fem::ScaleFactors factors : request.factors) m(factors.stiffness, factors.mass);
   return m.bytes();
 }

@@ -18,6 +18,7 @@ struct MotionRequest {
   bool loads = false;          ///< True if equivalent static loads are collected.
   double frames_every = 0;     ///< Time between two frames for ParaView [s]; 0 means no frames.
   int snapshots = 0;           ///< Number of pictures of a mechanism: 0, or at least 2.
+  int animated = 0;            ///< Number of frames for the animation: 0, or at least 2.
   bool condition = false;      ///< True if the condition of the last matrix is estimated.
   bool balance = true;         ///< True if the energy balance is computed.
 

@@ -13,6 +13,7 @@ namespace {
 
 const char *const kCheckpoint = ".checkpoint", *const kVerified = "motion_verified.csv",
                   *const kOnCells = "motion_on_cells.csv";
+constexpr int kAnimatedFrames = 151;  // of the animation of a motion in the report
 
 std::vector<fem::ScaleFactors> uniform_factors(std::span<const mmc::BodyProblem> problems) {
   std::vector<fem::ScaleFactors> out;
@@ -87,6 +88,7 @@ MotionRequest result_request(const RunContext& run, const std::string& phase) {
   const Output& output = run.scene().output;
   out.frames_every = output.vtk ? output.motion_every : 0;
   out.snapshots = run.scene().is_mechanism() && output.plots ? kSnapshots : 0;
+  out.animated = output.plots ? kAnimatedFrames : 0;
   out.condition = run.condition;
   return out;
 }
@@ -203,6 +205,7 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
     MotionRequest request =
         resumable_request(run, "motion with uniform material", "motion_uniform.csv");
     request.factors = uniform_factors(problems);
+    request.animated = scene.output.plots ? kAnimatedFrames : 0;
     all.push_back({1, request, &motions.uniform});
   }
   if (scene.verify) {

@@ -191,12 +191,11 @@ CaseNode* CaseNode::find(const std::string& wanted) {
   return const_cast<CaseNode*>(std::as_const(*this).find(wanted));
 }
 
-void CaseNode::note(const std::string& about, const std::string& sentence,
-                    const std::string& value) const {
+void CaseNode::note(CaseNote note) const {
   const auto old = std::find_if(notes.begin(), notes.end(),
-                                [&](const CaseNote& each) { return each.key == about; });
+                                [&](const CaseNote& each) { return each.key == note.key; });
   CaseNote& location = old == notes.end() ? notes.emplace_back() : *old;
-  location = {about, sentence, value};
+  location = std::move(note);
 }
 
 bool is_bare_key(const std::string& word) {

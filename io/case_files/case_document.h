@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "io/case_files/setting.h"
+
 namespace flexmorph::io {
 
 /// The information that a reader attaches to a key of a table, for the explained case.
@@ -16,6 +18,7 @@ struct CaseNote {
 
   /// Value in TOML that was used because the file has no such key; empty if the file has it.
   std::string value;
+  std::string fallback;  ///< Value in TOML that a missing key has; empty if it depends on the case.
 };
 
 /// One value of a case file, with its location in the file.
@@ -49,8 +52,8 @@ struct CaseNode {
   /// Returns the entry of a key, or null if there is none.
   const CaseNode* find(const std::string& wanted) const;
   CaseNode* find(const std::string& wanted);
-  /// Stores a note about a key. It replaces an older note about the key.
-  void note(const std::string& about, const std::string& sentence, const std::string& value) const;
+  /// Stores a note. It replaces an older note about the same key.
+  void note(CaseNote note) const;
 };
 
 /// A case file as a tree of values.
@@ -86,6 +89,10 @@ struct CaseDocument {
   /// Returns the effective case, including the values that readers used for missing keys, with the
   /// sentence of each key as a comment.
   std::string explained_text() const;
+
+  /// Returns the values that differ from their defaults, as far as readers have accessed them, and
+  /// all values that --set options gave.
+  std::vector<Setting> settings() const;
 
   /// Replaces texts by numbers wherever keys take numbers: formulas of [constants], and numbers
   /// with a unit, which are converted to SI units. All overrides must have been applied.

@@ -315,6 +315,8 @@ const std::vector<std::string>& CaseFile::former_names() const {
   return root_->document->former_names;
 }
 
+std::vector<Setting> CaseFile::settings() const { return root_->document->settings(); }
+
 void CaseFile::finish() const { root_->document->refuse_unknown_keys(); }
 
 namespace {

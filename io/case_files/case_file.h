@@ -9,6 +9,7 @@
 
 #include "geometry/base.h"
 #include "io/case_files/key.h"
+#include "io/case_files/setting.h"
 
 namespace flexmorph::io {
 
@@ -167,6 +168,10 @@ class CaseFile {
   /// Checks that readers have accessed every key.
   /// @throws Error (input) with every unknown key and the most similar known one.
   void finish() const;
+
+  /// Returns the values that differ from their defaults, as far as readers have accessed them, and
+  /// all values that overrides gave.
+  std::vector<Setting> settings() const;
 
   /// Returns the effective case: the text of the file, or the rewritten document if earlier
   /// overrides or `overrides` have changed it.

@@ -14,6 +14,21 @@ Words lines_of(const std::string& text) {
   return out;
 }
 
+std::string without_tags(const std::string& html) {
+  std::string out;
+  bool inside = false;
+  for (const char c : html) {
+    if (c == '<') inside = true;
+    if (!inside) out += c;
+    if (c == '>') inside = false;
+  }
+  for (const auto& [code, text] :
+       {std::pair{"&quot;", "\""}, {"&lt;", "<"}, {"&gt;", ">"}, {"&amp;", "&"}})
+    for (size_t at = 0; (at = out.find(code, at)) != std::string::npos; ++at)
+      out.replace(at, std::string(code).size(), text);
+  return out;
+}
+
 ChildProgram start(const Scratch& scratch, const Words& arguments) {
   Words words = {FLEXMORPH_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());

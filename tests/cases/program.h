@@ -17,6 +17,9 @@ using Words = std::vector<std::string>;
 /// Returns the lines of a text without their line ends.
 Words lines_of(const std::string& text);
 
+/// Returns the text of a page without its tags and with plain quotes.
+std::string without_tags(const std::string& html);
+
 using Ended = testing::ChildEnd;
 using testing::ChildProgram;
 using testing::eventually;

@@ -318,18 +318,5 @@ TEST(Text, OfNumbers) {
   EXPECT_EQ(to_text(1.25e-5, 3), "1.25e-05");
 }
 
-TEST(Report, StandsAlone) {
-  const ReportSection numbers{.heading = "Results & more",
-                              .rows = {{"name", "value"}, {"compliance", "<1>"}}};
-  const ReportSection plots{.words = "Histories",
-                            .pictures = {"<?xml version=\"1.0\"?>\n<svg id=\"p\"></svg>\n"}};
-  const std::string page = report_html("A \"plate\"", std::vector<ReportSection>{numbers, plots});
-  EXPECT_TRUE(contains(page, "<h2>Results &amp; more</h2>"));
-  EXPECT_TRUE(contains(page, "<td>compliance</td><td>&lt;1&gt;</td>"));
-  EXPECT_TRUE(contains(page, "<svg id=\"p\"></svg>"));
-  EXPECT_FALSE(contains(page, "<?xml"));
-  EXPECT_FALSE(contains(page, "http"));  // has no external references
-}
-
 }  // namespace
 }  // namespace flexmorph::io

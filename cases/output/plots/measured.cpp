@@ -74,9 +74,9 @@ void add_measured(const std::vector<double>& x, const std::string& x_label, cons
     }
 }
 
-std::string measured_plot(const MotionRecord& motion) {
+io::Figure measured_plot(const MotionRecord& motion) {
   const std::vector<std::string> bodies = bodies_of(motion.table);
-  if (bodies.empty()) return "";
+  if (bodies.empty()) return {};
   const std::vector<double>& time = motion.time();
   io::Figure figure;
   figure.title = "Measured quantities";
@@ -94,7 +94,7 @@ std::string measured_plot(const MotionRecord& motion) {
       kinetic.curves.push_back(std::move(curve));
     }
   if (kinetic.curves.size() > 1) figure.panels.push_back(std::move(kinetic));
-  return io::plot_svg(figure);
+  return figure;
 }
 
 }  // namespace flexmorph::cases

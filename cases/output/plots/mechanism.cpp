@@ -44,7 +44,7 @@ bool varies(const std::vector<double>& y) {
 
 }  // namespace
 
-std::string inputs_plot(const Scene& scene) {
+io::Figure inputs_plot(const Scene& scene) {
   const UsedDrives used(scene);
   io::Figure figure;
   figure.title =
@@ -67,12 +67,12 @@ std::string inputs_plot(const Scene& scene) {
   };
   add(used.lengths, "length [m]");
   add(used.angles, "angle [rad]");
-  return figure.panels.empty() ? "" : io::plot_svg(figure);
+  return figure;
 }
 
-std::string error_plot(const Scene& scene, const MotionRecord& design,
-                       const std::optional<MotionRecord>& uniform) {
-  if (!scene.trajectory) return "";
+io::Figure error_plot(const Scene& scene, const MotionRecord& design,
+                      const std::optional<MotionRecord>& uniform) {
+  if (!scene.trajectory) return {};
   const std::string& body = scene.trajectory->body;
   io::Figure figure;
   figure.title = "Deviation of " + body + " from its trajectory";
@@ -93,7 +93,7 @@ std::string error_plot(const Scene& scene, const MotionRecord& design,
     if (uniform) add("uniform material", *uniform, true);
     figure.panels.push_back(std::move(panel));
   }
-  return io::plot_svg(figure);
+  return figure;
 }
 
 std::string snapshot_plot(const MotionRecord& motion) {
@@ -103,7 +103,7 @@ std::string snapshot_plot(const MotionRecord& motion) {
   return any ? io::plane_frames_svg("Snapshots of the mechanism", motion.snapshots) : "";
 }
 
-std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
+io::Figure joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
   io::Figure figure;
   figure.title = "Joint forces";
   figure.panel_height = 230;
@@ -130,7 +130,7 @@ std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
     if (joint.row->has_moment) add({{"moment", ""}}, "moment [N m]");
     add({{"power", ""}}, "power [W]");
   }
-  return figure.panels.empty() ? "" : io::plot_svg(figure);
+  return figure;
 }
 
 }  // namespace flexmorph::cases

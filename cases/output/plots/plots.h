@@ -7,38 +7,39 @@
 #include "cases/results/verified_outline.h"
 #include "io/plots.h"
 
-/// Plots of a run as SVG text. A function returns an empty text where there is nothing to show.
+/// Plots of a run. A function returns a figure without panels, or an empty text, where there is
+/// nothing to show.
 namespace flexmorph::cases {
 
 /// Draws compliance, volume and KKT residual against iterations: P Fig. 29.
-std::string convergence_plot(const RunFolder::History& history);
+io::Figure convergence_plot(const RunFolder::History& history);
 
 /// Draws the deflection of the tip of every body against time: P Fig. 23.
-std::string deflection_plot(const MotionRecord& design, const std::optional<MotionRecord>& uniform);
+io::Figure deflection_plot(const MotionRecord& design, const std::optional<MotionRecord>& uniform);
 
 /// Draws the coordinates of observed points against time.
-std::string observed_plot(const MotionRecord& motion);
+io::Figure observed_plot(const MotionRecord& motion);
 
 /// Draws displacements and strain energy against the load factor, which may decrease along an
 /// arc-length path.
-std::string path_plot(const PathRecord& path);
+io::Figure path_plot(const PathRecord& path);
 
 /// Draws the energies of the model against time.
-std::string energy_plot(const Scene& scene, const MotionRecord& motion);
+io::Figure energy_plot(const Scene& scene, const MotionRecord& motion);
 
 /// Draws the drives that follow from the trajectory (without a trajectory: all drives that are
 /// used) against time, with separate panels for lengths and angles: P Fig. 25.
-std::string inputs_plot(const Scene& scene);
+io::Figure inputs_plot(const Scene& scene);
 
 /// Draws the error of the rigid body that follows the trajectory against time: P Fig. 31.
-std::string error_plot(const Scene& scene, const MotionRecord& design,
-                       const std::optional<MotionRecord>& uniform);
+io::Figure error_plot(const Scene& scene, const MotionRecord& design,
+                      const std::optional<MotionRecord>& uniform);
 
 /// Draws snapshots of the mechanism at a few times: P Fig. 30.
 std::string snapshot_plot(const MotionRecord& motion);
 
 /// Draws forces, moments and powers of named joints against time.
-std::string joint_forces_plot(const Scene& scene, const MotionRecord& motion);
+io::Figure joint_forces_plot(const Scene& scene, const MotionRecord& motion);
 
 /// Adds panels of the measured columns of a table over x: temperature, lengths of the position
 /// gradients, displacements, velocities, strains, deflections; T Figs. 4 to 10 and 14.
@@ -46,9 +47,9 @@ void add_measured(const std::vector<double>& x, const std::string& x_label, cons
                   io::Figure& figure);
 
 /// Draws the measured columns of a motion over time, with the kinetic energy of the model beside
-/// the closed-form energies of free bodies: T Fig. 12. Returns an empty text without measured
+/// the closed-form energies of free bodies: T Fig. 12. Returns no panels without measured
 /// columns.
-std::string measured_plot(const MotionRecord& motion);
+io::Figure measured_plot(const MotionRecord& motion);
 
 /// Draws a verified design under its worst load: the deformed outline, coloured by the von Mises
 /// stress. Returns an empty text without a verification, or for an infinite compliance.

@@ -27,7 +27,7 @@ void add_observed(const io::Axis& x, const std::vector<double>& at, const Series
 
 }  // namespace
 
-std::string convergence_plot(const RunFolder::History& h) {
+io::Figure convergence_plot(const RunFolder::History& h) {
   io::Figure figure;
   figure.title = "Convergence of the design of " + h.body;
   io::Panel compliance;
@@ -45,11 +45,10 @@ std::string convergence_plot(const RunFolder::History& h) {
   kkt.y = {"KKT residual", true, {}, {}};
   kkt.curves.push_back({"", h.row, h.kkt, true, false, false});
   figure.panels = {compliance, volume, kkt};
-  return io::plot_svg(figure);
+  return figure;
 }
 
-std::string deflection_plot(const MotionRecord& design,
-                            const std::optional<MotionRecord>& uniform) {
+io::Figure deflection_plot(const MotionRecord& design, const std::optional<MotionRecord>& uniform) {
   io::Figure figure;
   figure.title = "Tip deflection";
   const std::vector<size_t> tips = design.table.of_group(ColumnGroup::deflection);
@@ -66,19 +65,19 @@ std::string deflection_plot(const MotionRecord& design,
           {"uniform material", uniform->time(), uniform->table.at(name), true, false, true});
     figure.panels.push_back(panel);
   }
-  return io::plot_svg(figure);
+  return figure;
 }
 
-std::string observed_plot(const MotionRecord& motion) {
+io::Figure observed_plot(const MotionRecord& motion) {
   io::Figure figure;
   figure.title = "Motion of observed points";
   io::Axis time;
   time.label = "time [s]";
   add_observed(time, motion.time(), motion.table, "position [m]", figure);
-  return io::plot_svg(figure);
+  return figure;
 }
 
-std::string path_plot(const PathRecord& path) {
+io::Figure path_plot(const PathRecord& path) {
   const std::vector<double>& factor = path.table.at(kFactorColumn);
   io::Figure figure;
   figure.title = "Path of equilibria";
@@ -93,10 +92,10 @@ std::string path_plot(const PathRecord& path) {
   energy.y.label = "strain energy [J]";
   energy.curves.push_back({"", factor, path.table.at(kStrainColumn), true, true, false});
   figure.panels.push_back(energy);
-  return io::plot_svg(figure);
+  return figure;
 }
 
-std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
+io::Figure energy_plot(const Scene& scene, const MotionRecord& motion) {
   io::Figure figure;
   figure.title = "Energies";
   const Series& table = motion.table;
@@ -113,7 +112,7 @@ std::string energy_plot(const Scene& scene, const MotionRecord& motion) {
   for (const size_t c : table.of_group(ColumnGroup::term))
     panel(table.columns[c].name + " [J]", table.values[c]);
   panel("energy error [J]", table.at(kEnergyErrorColumn));
-  return io::plot_svg(figure);
+  return figure;
 }
 
 }  // namespace flexmorph::cases

@@ -240,8 +240,8 @@ TEST(Run, KeepsTheBestOfItsCycles) {
   EXPECT_LE(run["shared_mass"]["used"].get<double>(),
             run["shared_mass"]["allowed"].get<double>() * (1 + 1e-4));
   EXPECT_GT(run["results"][0]["volume"].get<double>(), run["results"][1]["volume"].get<double>());
-  const std::string report = contents_of(folder + "/report.html");
-  for (const char* column : {"<th>cycle</th>", "heavy: crisp compliance [J]"})
+  const std::string report = without_tags(contents_of(folder + "/report.html"));
+  for (const char* column : {"strain energy is the best", "heavy: crisp compliance [J]"})
     EXPECT_TRUE(contains(report, column)) << column;
 }
 
