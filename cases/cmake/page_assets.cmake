@@ -1,7 +1,7 @@
 # Writes page_assets.cpp: the files of cases/output/page, the glossary, and the library of plots as
 # texts of the program.
 #
-#   cmake -DOUTPUT=<file.cpp> -DFILES=<name=path|name=path...> -P page_assets.cmake
+#   cmake -DOUTPUT=<source file> -DFILES=<name=path|name=path...> -P page_assets.cmake
 #
 # A name without a path gives an empty text.
 

@@ -26,9 +26,9 @@ std::vector<OldRun> find_old_runs(const std::string& folder);
 /// Selection of run folders; a folder is selected if it meets all conditions that are set. Running
 /// runs are never selected.
 struct OldRunSelection {
-  std::optional<double> older;  ///< The results are older than this [s].
-  std::optional<int> keep;      ///< The run is none of this number of newest runs of its case.
-  bool all = false;             ///< True: all runs that meet the other conditions are selected.
+  std::optional<double> older = {};  ///< The results are older than this [s].
+  std::optional<int> keep = {};      ///< The run is none of this number of newest runs of its case.
+  bool all = false;  ///< True: all runs that meet the other conditions are selected.
 
   /// Tells whether any condition is set.
   bool any() const { return older || keep || all; }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cases/output/run_folder.h"
-#include "cases/results/verified_outline.h"
+#include "cases/results/parts/verified_outline.h"
 
 namespace flexmorph::cases {
 

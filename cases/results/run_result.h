@@ -6,9 +6,9 @@
 
 #include "cases/results/failure.h"
 #include "cases/results/motion_record.h"
-#include "cases/results/part_comparison.h"
+#include "cases/results/parts/part_comparison.h"
+#include "cases/results/parts/verified_outline.h"
 #include "cases/results/static_loads.h"
-#include "cases/results/verified_outline.h"
 #include "optim/mmc/cycles/corrected_cycles.h"
 #include "optim/mmc/cycles/esl_loop.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/results/verified_outline.h"
+#include "cases/results/parts/verified_outline.h"
 #include "cases/scene/scene.h"
 
 /// Results of the load cases of a static plate, for its final design.

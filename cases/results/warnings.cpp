@@ -6,7 +6,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/assembly/static_conditions.h"
-#include "cases/results/part_checks.h"
+#include "cases/results/parts/part_checks.h"
 #include "io/files.h"
 #include "optim/mmc/cycles/usability.h"
 

@@ -21,7 +21,7 @@ enum class DesignStage {
 
 /// Settings of a design problem.
 struct DesignProblemSettings {
-  std::string body;                       ///< Designed body; may be empty if the case has only one.
+  std::string body = {};                  ///< Designed body; may be empty if the case has only one.
   DesignStage stage = DesignStage::last;  ///< Formulation of the design problem.
 
   /// True if the responses are those of the motion itself, with their exact gradients, for all

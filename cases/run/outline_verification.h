@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "cases/output/run_folder.h"
-#include "cases/results/verified_outline.h"
+#include "cases/results/parts/verified_outline.h"
 
 namespace flexmorph::cases {
 

@@ -7,7 +7,7 @@
 #include "cases/check/ready.h"
 #include "cases/output/kept_case.h"
 #include "cases/output/paraview_script.h"
-#include "cases/results/part_checks.h"
+#include "cases/results/parts/part_checks.h"
 #include "cases/results/warnings.h"
 #include "cases/run/finished_run.h"
 #include "cases/run/run.h"

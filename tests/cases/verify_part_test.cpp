@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "cases/results/part_checks.h"
+#include "cases/results/parts/part_checks.h"
 #include "geometry/components/outline.h"
 #include "io/drawings/step.h"
 #include "tests/cases/program.h"

@@ -102,8 +102,8 @@ TEST(ImageData, RoundsTheMantissa) {
     EXPECT_NEAR(coarse->GetOutput()->GetCellData()->GetArray("v")->GetTuple1(k), value,
                 std::ldexp(std::abs(value), -11));
   }
-  EXPECT_LT(contents_of(scratch / "ten.vti").size(),
-            0.75 * contents_of(scratch / "all.vti").size());
+  EXPECT_LT(static_cast<double>(contents_of(scratch / "ten.vti").size()),
+            0.75 * static_cast<double>(contents_of(scratch / "all.vti").size()));
 }
 
 // Field data belong to no cell or point, and may have any length.

@@ -4,7 +4,7 @@
 
 #include "cases/output/run_folder.h"
 #include "cases/results/motion_record.h"
-#include "cases/results/verified_outline.h"
+#include "cases/results/parts/verified_outline.h"
 #include "io/plots.h"
 
 /// Plots of a run. A function returns a figure without panels, or an empty text, where there is

@@ -1,4 +1,4 @@
-#include "cases/results/part_comparison.h"
+#include "cases/results/parts/part_comparison.h"
 
 #include <algorithm>
 #include <cmath>

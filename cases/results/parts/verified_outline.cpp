@@ -1,4 +1,4 @@
-#include "cases/results/verified_outline.h"
+#include "cases/results/parts/verified_outline.h"
 
 #include <cmath>
 

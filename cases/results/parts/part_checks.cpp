@@ -1,4 +1,4 @@
-#include "cases/results/part_checks.h"
+#include "cases/results/parts/part_checks.h"
 
 #include <algorithm>
 #include <cmath>
