@@ -59,6 +59,7 @@ TEST(ResourceEstimate, IsThatOfMeasuredRuns) {
       {"telescopic_crane", {"body.0.flow.mesh=split", "cycle.max_cycles=1", "verify="}, 360, 0},
       {"motion_platform", {"cycle.max_cycles=1", "verify={refine=2}"}, 431, 0},
       {"rotating_plate_v01", {"cycle.max_cycles=1", "verify={mesh=[20,4]}"}, 105, 0},
+      {"rotating_plate_v01", {"cycle.max_cycles=1"}, 202, 43.9},
       {"rotating_plate_v01", {"cycle.max_cycles=2"}, 339, 0},
       {"short_beam", {}, 47.1, 0},
       {"short_beam", {"design.cell=0.00625", "optimizer.max_iterations=10"}, 182, 0},
