@@ -23,6 +23,8 @@ Command run_command(CLI::App& app) {
   add_threads(*run, options->threads);
   run->add_flag("--condition", options->condition, "estimates condition numbers for run.json");
   run->add_flag("--explain", options->explain, "writes the case with all default values");
+  run->add_flag("--open", options->open,
+                "opens the page of the run, which is renewed, in a browser");
   run->add_flag("--quiet", options->quiet, "prints no progress");
   run->add_flag("--resume", options->resume, "continues a run of this case that is not finished");
   return {run, [options] { return run_case(*options); }, true, &options->threads};

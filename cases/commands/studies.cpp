@@ -6,6 +6,7 @@
 #include "cases/stability/stability.h"
 #include "cases/study/compare.h"
 #include "cases/study/compare_cycles.h"
+#include "cases/study/run_comparison.h"
 #include "cases/study/sweep.h"
 
 namespace flexmorph::cases {
@@ -69,6 +70,16 @@ Command sweep_command(CLI::App& app) {
   return {command, [options] { return sweep_case(*options); }};
 }
 
+Command report_command(CLI::App& app) {
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App* command = add_command(app, "report", "writes a page that compares runs",
+                                  "runs/four_bar runs/four_bar_light -o comparison.html");
+  command->add_option("runs", options->runs, "folders of runs")->type_name("FOLDER")->required();
+  add_value(*command, "-o,--output", options->path, "FILE",
+            "page that is written (default " + options->path + ")");
+  return printing(command, [options] { return compare_runs(*options); });
+}
+
 Command accuracy_command(CLI::App& app) {
   const auto options = std::make_shared<AccuracyOptions>();
   CLI::App* command = add_command(app, "accuracy", "finds the cheapest settings for an error",
@@ -104,7 +115,8 @@ Command stability_command(CLI::App& app) {
 }  // namespace
 
 std::vector<Command> commands_of_studies(CLI::App& app) {
-  return {compare_command(app), sweep_command(app), accuracy_command(app), stability_command(app)};
+  return {compare_command(app), sweep_command(app), report_command(app), accuracy_command(app),
+          stability_command(app)};
 }
 
 }  // namespace flexmorph::cases

@@ -1,5 +1,6 @@
 #include "cases/output/report.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cases/output/headline.h"
@@ -39,7 +40,8 @@ class RunPage {
     out.title = scene_.title;
     const std::string& status = result_.info.status;
     out.status = status + (result_.info.message.empty() ? "" : ": " + result_.info.message);
-    out.good = status == "done" || status == "running";
+    out.good = status == "done" || is_running();
+    out.refreshes = is_running();
     out.facts = headline(scene_, result_, folder_);
     if (result_.motions.motion)
       for (const std::string& each : result_.motions.motion->remarks)
@@ -67,18 +69,23 @@ class RunPage {
 
  private:
   bool plots() const { return scene_.output.plots; }
+  bool is_running() const { return result_.info.status == "running"; }
+  /// Writes a picture to plots/, once the run has ended.
+  void keep(const std::string& name, const std::string& svg) {
+    if (!is_running()) folder_.write_text("plots/" + name + ".svg", svg);
+  }
 
   /// Returns a picture as HTML, after writing it to plots/; nothing for an empty picture.
   std::string picture(const std::string& name, const std::string& svg) {
     if (!plots() || svg.empty()) return "";
-    folder_.write_text("plots/" + name + ".svg", svg);
+    keep(name, svg);
     return figure(svg);
   }
   /// Returns a plot as HTML with its heading, after writing its picture to plots/.
   std::string plot(const std::string& name, const std::string& heading, const io::Figure& curves) {
     if (!plots() || curves.panels.empty()) return "";
     const std::string svg = io::plot_svg(curves);
-    folder_.write_text("plots/" + name + ".svg", svg);
+    keep(name, svg);
     data_["plots"][name] = figure_data(curves);
     return "<h3>" + explained(heading) + "</h3>\n" + figure(svg, name);
   }
@@ -99,9 +106,21 @@ class RunPage {
           std::string(scene_.output.unit.name) + ".");
     for (const VerifiedOutline& v : result_.design.outlines)
       if (const std::string svg = plots() ? stress_plot(v) : ""; !svg.empty())
-        out.html += "<h3>" + explained("Von Mises stress of " + v.body) + "</h3>\n" +
+        out.html += "<h3>" +
+                    explained("Von Mises stress of " + v.body + " under " + shown_load(v)) +
+                    "</h3>\n" +
+                    paragraph(
+                        "Peaks of the stress on at most 0.5 % of the area have the lightest "
+                        "colour, too.") +
                     picture("stress_" + v.body, svg);
     return out;
+  }
+
+  /// Returns the name of the load whose stresses are shown: the one with the largest compliance.
+  std::string shown_load(const VerifiedOutline& v) const {
+    const std::vector<double>& all = v.verification->compliances;
+    const auto index = std::max_element(all.begin(), all.end()) - all.begin();
+    return load_name(result_, folder_, v.body, static_cast<size_t>(index));
   }
 
   PageSection mechanism_section() {
@@ -117,7 +136,7 @@ class RunPage {
     }
     const std::string shapes = snapshot_plot(*motions.motion);
     if (!shapes.empty()) {
-      folder_.write_text("plots/mechanism.svg", shapes);
+      keep("mechanism", shapes);
       out.html += "<div class=\"static wide\">" + shapes.substr(shapes.find("<svg")) + "</div>";
     }
     if (!animation.time.empty()) out.html += "</div>\n";
@@ -196,6 +215,11 @@ void write_report(const Scene& scene, const RunResult& result, RunFolder& folder
   const Page page = RunPage(scene, result, folder).page();
   folder.write_text("report.html", page_html(page));
   if (done) folder.write_text("run.json", run_json(scene, result));
+}
+
+void write_live_report(const Scene& scene, const RunResult& result, RunFolder& folder) {
+  // Not stored at once (io::Sync), because the next page replaces it soon.
+  io::write_file(folder.file("report.html"), page_html(RunPage(scene, result, folder).page()));
 }
 
 }  // namespace flexmorph::cases

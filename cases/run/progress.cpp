@@ -77,6 +77,11 @@ void Progress::begin(const std::string& phase) {
   if (terminal_) line(phase, "", true);
 }
 
+void Progress::watch(std::function<void(const std::string&)> watcher) {
+  const std::lock_guard guard(lock_);
+  watcher_ = std::move(watcher);
+}
+
 void Progress::plan(WorkPlan phases) {
   const std::lock_guard guard(lock_);
   plan_ = std::move(phases);
@@ -111,13 +116,15 @@ void Progress::iteration(const mmc::IterationReport& r) {
     tail += ", compliance " + formatted("%.5g", r.state.compliance());
   tail += ", volume fraction " + formatted("%.4f", r.state.volume()) + ", KKT residual " +
           formatted("%.1e", r.iterate.kkt);
+  watcher_(with_time(head));
   line(head, tail, r.iteration == 1 || r.iteration % 25 == 0);
 }
 
 void Progress::way(const std::string& phase, double part, const std::string& words) {
-  if (quiet_) return;
   const std::lock_guard guard(lock_);
   plan_.advance(phase, part, {1 - part, 1 - part}, seconds());
+  watcher_(with_time(phase + ": " + words));
+  if (quiet_) return;
   const double pause = std::chrono::duration<double>(Clock::now() - shown_).count();
   if (pause < (terminal_ ? kTerminal : kElsewhere)) return;
   line(phase + ": " + words, "", true);

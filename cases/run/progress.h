@@ -32,6 +32,9 @@ class Progress {
   /// coloured if the error stream is a terminal.
   void object(const std::string& kind, const std::string& text);
 
+  /// Sets a function that receives the position of the run in words whenever progress is reported.
+  /// Calls do not overlap.
+  void watch(std::function<void(const std::string&)> watcher);
   /// Sets the planned phases, from which the remaining time is estimated.
   void plan(WorkPlan phases);
   /// Starts a phase of the run.
@@ -59,6 +62,7 @@ class Progress {
   mutable std::mutex lock_;
   bool quiet_, terminal_, open_ = false;
   std::function<void(const std::string&)> told_;  // empty: messages are printed
+  std::function<void(const std::string&)> watcher_ = [](const std::string&) {};
   Failure where_;
   WorkPlan plan_;
   Clock::time_point begin_ = Clock::now(), shown_ = {};

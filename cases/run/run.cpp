@@ -13,6 +13,7 @@
 #include "cases/output/paraview_script.h"
 #include "cases/run/compute.h"
 #include "cases/run/design_run.h"
+#include "cases/run/live_page.h"
 #include "cases/run/motions.h"
 #include "cases/run/path_run.h"
 #include "io/case_files/case_parser.h"
@@ -188,6 +189,12 @@ int run_in_folder(const ReadyCase& ready, const std::string& directory, const Ru
     progress.say("The earlier run in this folder was moved to " + folder.moved_to());
   RunFiles files(scene, folder, options.threads, begin);
   files.write({}, "running", "");
+  LivePage page(scene, folder);
+  page.update("the model is built");
+  progress.watch([&](const std::string& words) { page.update(words); });
+  if (options.open)
+    if (const std::string why = open_on_desktop(directory + "/report.html"); !why.empty())
+      progress.object("warning", why);
   EndedRun ended = run_prepared({.prepared = prepared,
                                  .folder = &folder,
                                  .progress = progress,

@@ -104,14 +104,14 @@ io::Panel profile_panel(const Comparison& plan, std::span<const VariantResult> r
 
 }  // namespace
 
-std::string comparison_svg(const Comparison& plan, std::span<const VariantResult> runs) {
+io::Figure comparison_figure(const Comparison& plan, std::span<const VariantResult> runs) {
   io::Figure figure;
   figure.title = plan.case_name + ": comparison of optimizers, " + std::to_string(plan.starts) +
                  (plan.starts == 1 ? " start" : " starts");
   figure.width = 900;
   figure.panels = {convergence(plan, runs, false), convergence(plan, runs, true),
                    profile_panel(plan, runs, 0.05), profile_panel(plan, runs, 0.01)};
-  return io::plot_svg(figure);
+  return figure;
 }
 
 }  // namespace flexmorph::cases

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cases/study/statistics.h"
+#include "cases/study/study_page.h"
 #include "io/files.h"
 #include "io/tables.h"
 
@@ -152,19 +153,28 @@ void write_comparison(const Comparison& plan, std::span<const VariantResult> run
                       const std::string& directory) {
   const std::string stem = directory + "/compare";
   write_results(plan.table, runs, stem + ".csv");
-  io::write_file(
-      stem + ".md",
-      "# " + plan.case_name + "\n\n" + io::markdown_table(summary_of(plan, runs)) +
-          "\nThe numbers are medians over the starts. The figure ranks the designs: it is "
-          "body-fitted compliance x volume / allowed volume. If the outline was not verified, the "
-          "compliance and the volume of the crisp design are used. If the objective is not a "
-          "compliance, the figure is the objective of the crisp design. Two optimizers are "
-          "distinguishable if neither median lies within the range of the other; otherwise the "
-          "results of the starts scatter too much for a verdict. One state solve gives values and "
-          "gradients. A peak exceeds its neighbours by more than 2 % of the best compliance so "
-          "far.\n\n" +
-          io::markdown_table(result_rows(plan.table, runs)) + convergence_note(runs));
-  io::write_file(stem + ".svg", comparison_svg(plan, runs));
+  const std::string note =
+      "The numbers are medians over the starts. The figure ranks the designs: it is "
+      "body-fitted compliance x volume / allowed volume. If the outline was not verified, the "
+      "compliance and the volume of the crisp design are used. If the objective is not a "
+      "compliance, the figure is the objective of the crisp design. Two optimizers are "
+      "distinguishable if neither median lies within the range of the other; otherwise the "
+      "results of the starts scatter too much for a verdict. One state solve gives values and "
+      "gradients. A peak exceeds its neighbours by more than 2 % of the best compliance so "
+      "far.";
+  const Rows summary = summary_of(plan, runs), rows = result_rows(plan.table, runs);
+  io::write_file(stem + ".md", "# " + plan.case_name + "\n\n" + io::markdown_table(summary) + "\n" +
+                                   note + "\n\n" + io::markdown_table(rows) +
+                                   convergence_note(runs));
+  const io::Figure figure = comparison_figure(plan, runs);
+  io::write_file(stem + ".svg", io::plot_svg(figure));
+  StudyPage page;
+  page.title = plan.case_name + ": comparison of optimizers";
+  page.notes = {note};
+  page.summary = summary;
+  page.rows = rows;
+  page.plots = {{"comparison", figure}};
+  write_study_page(page, runs, stem + ".html");
 }
 
 }  // namespace flexmorph::cases

@@ -7,6 +7,7 @@
 
 #include "cases/scene/scene.h"
 #include "cases/study/result_table.h"
+#include "io/plots.h"
 
 namespace flexmorph::cases {
 
@@ -29,10 +30,10 @@ std::vector<std::pair<const VariantResult*, int>> runs_of(const Comparison& plan
                                                           std::span<const VariantResult> runs,
                                                           size_t optimizer);
 
-/// Returns plots of the convergence over state solves and over CPU time, and data profiles, as SVG.
-std::string comparison_svg(const Comparison& plan, std::span<const VariantResult> runs);
+/// Returns plots of the convergence over state solves and over CPU time, and data profiles.
+io::Figure comparison_figure(const Comparison& plan, std::span<const VariantResult> runs);
 
-/// Writes compare.csv, compare.md and compare.svg into a folder.
+/// Writes compare.csv, compare.md, compare.svg and compare.html into a folder.
 /// @throws Error (input) when a file cannot be written.
 void write_comparison(const Comparison& plan, std::span<const VariantResult> runs,
                       const std::string& directory);

@@ -10,6 +10,7 @@
 #include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/scene/scene.h"
+#include "cases/study/study_page.h"
 #include "cases/study/sweep_motion.h"
 #include "cases/study/sweep_plan.h"
 #include "io/plots.h"
@@ -61,22 +62,20 @@ std::optional<double> number_of(const std::string& text) {
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// Returns a picture of the values at the end of the runs against the numbers of the last key;
-/// empty if this key has less than three values, or values that are not numbers.
-std::string ends_picture(const Sweep& sweep, std::span<const Motions> motions) {
+/// Returns a figure of the values at the end of the runs against the numbers of the last key;
+/// without panels if this key has less than three values, or values that are not numbers.
+io::Figure ends_figure(const Sweep& sweep, std::span<const Motions> motions) {
   const size_t last = sweep.varied.size() - 1;
-  if (sweep.varied[last].values.size() < 3) return "";
+  if (sweep.varied[last].values.size() < 3) return {};
   std::vector<double> numbers;
   std::vector<std::string> curves;
   for (size_t k = 0; k < motions.size(); ++k) {
     const std::optional<double> number = number_of(sweep.value(k, last));
-    if (!number) return "";
+    if (!number) return {};
     numbers.push_back(*number);
     curves.push_back(sweep.title_of(k, last));
   }
-  const io::Figure figure =
-      final_figure(sweep.case_name, sweep.varied[last].key, motions, numbers, curves);
-  return figure.panels.empty() ? "" : io::plot_svg(figure);
+  return final_figure(sweep.case_name, sweep.varied[last].key, motions, numbers, curves);
 }
 
 void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
@@ -87,10 +86,17 @@ void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
   for (size_t r = 1; r < rows.size(); ++r)
     csv.row(std::vector<io::Cell>(rows[r].begin(), rows[r].end()));
   io::write_file(stem + ".md", "# " + sweep.case_name + "\n\n" + io::markdown_table(rows));
-  io::write_file(stem + ".svg",
-                 io::plot_svg(motion_figure(sweep.case_name, motions, sweep.reference)));
-  if (const std::string ends = ends_picture(sweep, motions); !ends.empty())
-    io::write_file(stem + "_ends.svg", ends);
+  const io::Figure figure = motion_figure(sweep.case_name, motions, sweep.reference),
+                   ends = ends_figure(sweep, motions);
+  io::write_file(stem + ".svg", io::plot_svg(figure));
+  if (!ends.panels.empty()) io::write_file(stem + "_ends.svg", io::plot_svg(ends));
+  StudyPage page;
+  page.title = sweep.case_name + ": sweep";
+  page.summary = rows;
+  page.rows = {{"variant", "status"}};
+  for (const VariantResult& run : runs) page.rows.push_back({run.name, run.words()});
+  page.plots = {{"motions", figure}, {"ends", ends}};
+  write_study_page(page, runs, stem + ".html");
 }
 
 void write_all(const Sweep& sweep, std::span<const VariantResult> runs,
@@ -232,7 +238,7 @@ int sweep_case(const SweepOptions& options) {
   print_table(summary_of(sweep, outcome.results), "sweep.md");
   print_text(warnings_note(outcome.results));
   print_text(convergence_note(outcome.results));
-  std::printf("%s/sweep.md, .csv, .svg\n", study.directory.c_str());
+  std::printf("%s/sweep.html, .md, .csv, .svg\n", study.directory.c_str());
   return outcome.exit_code;
 }
 

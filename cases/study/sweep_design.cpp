@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "cases/study/study_page.h"
 #include "cases/study/sweep_plan.h"
 #include "io/files.h"
 #include "io/plots.h"
@@ -110,6 +111,25 @@ std::string sheet_of(const Sweep& sweep, std::span<const VariantResult> runs) {
       sweep.varied.size() > 1 && sweep.n_last() <= 6 ? static_cast<int>(sweep.n_last()) : 4);
 }
 
+/// Returns the smoothed compliances of all runs over their iterations, a panel per body.
+io::Figure histories_of(const Sweep& sweep, std::span<const VariantResult> runs) {
+  io::Figure out;
+  for (size_t b = 0; b < sweep.table.n_bodies(); ++b) {
+    io::Panel panel;
+    panel.x.label = "iteration";
+    panel.y = {"compliance [J]", true, {}, {}};
+    for (size_t k = 0; k < runs.size(); ++k) {
+      if (b >= runs[k].bodies.size()) continue;
+      panel.title = runs[k].bodies[b].body;
+      io::Curve curve{sweep.title_of(k), {}, runs[k].bodies[b].history_compliance};
+      for (size_t i = 0; i < curve.y.size(); ++i) curve.x.push_back(static_cast<double>(i + 1));
+      panel.curves.push_back(std::move(curve));
+    }
+    if (!panel.curves.empty()) out.panels.push_back(std::move(panel));
+  }
+  return out;
+}
+
 }  // namespace
 
 const std::string& Sweep::value(size_t variant, size_t key) const {
@@ -130,15 +150,21 @@ std::string last_part(const std::string& key) { return key.substr(key.rfind('.')
 void write_designs(const Sweep& sweep, std::span<const VariantResult> runs,
                    const std::string& stem) {
   write_results(sweep.table, runs, stem + ".csv");
-  io::write_file(
-      stem + ".md",
-      "# " + sweep.case_name + "\n\n" + io::markdown_table(result_rows(sweep.table, runs)) +
-          "\nThe figure ranks the designs: it is body-fitted compliance x volume / allowed volume. "
-          "If the outline was not verified, the compliance and the volume of the crisp design "
-          "are used. If the objective is not a compliance, the figure is the objective of the "
-          "crisp design.\n" +
-          convergence_note(runs));
+  const std::string note =
+      "The figure ranks the designs: it is body-fitted compliance x volume / allowed volume. "
+      "If the outline was not verified, the compliance and the volume of the crisp design "
+      "are used. If the objective is not a compliance, the figure is the objective of the "
+      "crisp design.";
+  const std::vector<std::vector<std::string>> rows = result_rows(sweep.table, runs);
+  io::write_file(stem + ".md", "# " + sweep.case_name + "\n\n" + io::markdown_table(rows) + "\n" +
+                                   note + "\n" + convergence_note(runs));
   io::write_file(stem + ".svg", sheet_of(sweep, runs));
+  StudyPage page;
+  page.title = sweep.case_name + ": sweep";
+  page.notes = {note};
+  page.rows = rows;
+  page.plots = {{"convergence", histories_of(sweep, runs)}};
+  write_study_page(page, runs, stem + ".html");
 }
 
 }  // namespace flexmorph::cases

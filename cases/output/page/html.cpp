@@ -11,6 +11,8 @@
 namespace flexmorph::cases {
 namespace {
 
+constexpr size_t kLongTable = 20;  // number of rows above which a table scrolls
+
 /// A term of the glossary, in lower case, and its meaning.
 struct GlossaryTerm {
   std::string name, meaning;
@@ -142,7 +144,9 @@ std::string spaced_name(std::string name) {
 
 std::string sortable_table(const std::vector<HtmlColumn>& columns,
                            const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<div class=\"wide\"><table class=\"sortable\">\n<thead><tr>";
+  const bool is_long = rows.size() > kLongTable;
+  std::string out = std::string("<div class=\"wide") + (is_long ? " long" : "") +
+                    "\"><table class=\"sortable\">\n<thead><tr>";
   for (const HtmlColumn& column : columns) out += "<th>" + head_of(column) + "</th>";
   out += "</tr></thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : rows) {
@@ -184,8 +188,8 @@ std::string quantity_table(const std::vector<std::string>& heads,
 
 std::string figure(const std::string& svg, const std::string& plot) {
   const std::string data = plot.empty() ? "" : " data-plot=\"" + escaped(plot) + "\"";
-  return "<figure class=\"plot\"" + data + "><div class=\"static wide\">" +
-         svg.substr(svg.find("<svg")) + "</div></figure>\n";
+  return std::string("<figure class=\"plot") + (plot.empty() ? " picture\"" : "\"") + data +
+         "><div class=\"static wide\">" + svg.substr(svg.find("<svg")) + "</div></figure>\n";
 }
 
 }  // namespace flexmorph::cases

@@ -63,6 +63,7 @@ function graphOptions(panel, legend) {
     legend: "always",
     labelsDiv: legend,
     sigFigs: 5,
+    yRangePad: 8,
     axes: {
       x: { axisLabelFormatter: (v) => shown(v) },
       y: { axisLabelWidth: 70, axisLabelFormatter: (v) => shown(v) },
