@@ -13,6 +13,20 @@ namespace {
 /// Returns the number with its unit, with four significant digits.
 std::string with_unit(double value, const char* unit) { return io::to_text(value, 4) + " " + unit; }
 
+/// Returns a length or a stress with four significant digits and the prefix of the unit for which
+/// the number is between 1 and 1000: "2.947 MPa", "1.341 mm".
+std::string with_prefix(double value, const std::string& unit) {
+  struct Prefix {
+    const char* letter;
+    double size;
+  };
+  static constexpr Prefix kPrefixes[] = {{"G", 1e9}, {"M", 1e6},  {"k", 1e3},
+                                         {"", 1},    {"m", 1e-3}, {"µ", 1e-6}};
+  for (const Prefix& p : kPrefixes)
+    if (std::abs(value) >= p.size) return io::to_text(value / p.size, 4) + " " + p.letter + unit;
+  return io::to_text(value, 4) + " " + unit;
+}
+
 /// Returns the sentence of a quantity of the result schema.
 template <class Source>
 std::string meaning_of(std::span<const ResultQuantity<Source>> table, std::string_view name) {
@@ -48,7 +62,7 @@ std::optional<PageFact> displacement_fact(const RunResult& result, const RunFold
     for (size_t l = 0; l < all.size(); ++l)
       if (all[l] > largest) {
         largest = all[l];
-        out = {"Largest displacement", with_unit(all[l], "m"),
+        out = {"Largest displacement", with_prefix(all[l], "m"),
                outline.body + ": " + load_name(result, folder, outline.body, l),
                "Largest displacement of the exported outline under one of its static loads."};
       }
@@ -63,7 +77,7 @@ std::optional<PageFact> stress_fact(const RunResult& result, const RunFolder& fo
     if (!outline.verification || !(outline.verification->largest_stress > largest)) continue;
     const verification::OutlineVerification& v = *outline.verification;
     largest = v.largest_stress;
-    out = {"Largest stress", with_unit(v.largest_stress, "Pa"),
+    out = {"Largest stress", with_prefix(v.largest_stress, "Pa"),
            outline.body + " at (" + io::to_text(v.largest_at.x(), 3) + ", " +
                io::to_text(v.largest_at.y(), 3) + ") m: " +
                load_name(result, folder, outline.body, static_cast<size_t>(v.largest_load)),

@@ -70,7 +70,8 @@ Rows number_rows(const std::vector<ComparedRun>& runs) {
     for (size_t b = 0; b < n; ++b) {
       const bool designed = b < run.result.bodies.size();
       rows.push_back({run.label, designed ? run.result.bodies[b].body : "", run.result.status,
-                      io::to_text(run.result.warnings), io::to_text(run.result.seconds_wall, 4)});
+                      io::to_text(static_cast<int>(run.result.warnings.size())),
+                      io::to_text(run.result.seconds_wall, 4)});
       const nlohmann::json results =
           designed ? run.numbers["results"][b] : nlohmann::json::object();
       designs.push_back(results);
