@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "cases/process/blas_buffers.h"
@@ -20,33 +21,34 @@ namespace {
 
 constexpr std::chrono::milliseconds kSignals(50);  // time between two looks at signals
 
-/// Lets OpenBLAS compute with one thread while computations of Flexmorph run.
-class OneBlasThread {
+/// Settings of the process that hold while computations of Flexmorph run: OpenBLAS uses one thread,
+/// and numbers have a decimal point. The last computation restores what the first one has found.
+class ProcessSettings {
  public:
-  OneBlasThread() {
-    const std::lock_guard lock(mutex());
-    if (users()++ > 0) return;
-    before() = openblas_get_num_threads();
-    if (before() != 1) openblas_set_num_threads(1);
+  ProcessSettings() {
+    const std::lock_guard lock(kept().mutex);
+    if (kept().users++ > 0) return;
+    kept().threads = openblas_get_num_threads();
+    if (kept().threads != 1) openblas_set_num_threads(1);
+    kept().numbers.emplace();
   }
-  ~OneBlasThread() {
-    const std::lock_guard lock(mutex());
-    if (--users() == 0 && before() != 1) openblas_set_num_threads(before());
+  ~ProcessSettings() {
+    const std::lock_guard lock(kept().mutex);
+    if (--kept().users > 0) return;
+    kept().numbers.reset();
+    if (kept().threads != 1) openblas_set_num_threads(kept().threads);
   }
-  OneBlasThread(const OneBlasThread&) = delete;
+  ProcessSettings(const ProcessSettings&) = delete;
 
  private:
-  static std::mutex& mutex() {
-    static std::mutex lock;
-    return lock;
-  }
-  static int& users() {
-    static int n = 0;
-    return n;
-  }
-  static int& before() {
-    static int n = 1;
-    return n;
+  struct Kept {
+    std::mutex mutex;
+    int users = 0, threads = 1;
+    std::optional<PlainNumbers> numbers;
+  };
+  static Kept& kept() {
+    static Kept kept;
+    return kept;
   }
 };
 
@@ -100,8 +102,7 @@ void compute_in_thread(const std::function<void()>& work, int threads, const Sto
   End end;
   {
     const py::gil_scoped_release release;
-    const PlainNumbers plain;
-    const OneBlasThread one;
+    const ProcessSettings settings;
     std::thread worker([&] { run(work, threads, end); });
     std::unique_lock waiting(end.lock);
     while (!end.signal.wait_for(waiting, kSignals, [&] { return end.reached; })) {

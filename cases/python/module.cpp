@@ -1,5 +1,6 @@
 #include <omp.h>
 
+#include "cases/assembly/scene_motion.h"
 #include "cases/keys/book.h"
 #include "cases/python/bindings.h"
 #include "cases/scene/version.h"
@@ -61,6 +62,8 @@ void bind_process(py::module_& m) {
       const bool input = error.kind() == Error::Kind::input;
       const py::object kind = self.attr(input ? "InputError" : "NumericalError");
       PyErr_SetString(kind.is_none() ? PyExc_RuntimeError : kind.ptr(), error.what());
+    } catch (const cases::StoppedMotion&) {
+      PyErr_SetNone(PyExc_KeyboardInterrupt);
     } catch (const cases::Interrupted&) {
       PyErr_SetNone(PyExc_KeyboardInterrupt);
     }

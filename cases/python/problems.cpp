@@ -1,5 +1,6 @@
 #include <cstring>
 #include <deque>
+#include <thread>
 
 #include "cases/python/bindings.h"
 #include "cases/results/schema.h"
@@ -142,6 +143,10 @@ class Problem {
   }
 
  private:
+  /// The thread that computes with the problem; no thread if nothing is computed.
+  struct Use {
+    std::atomic<std::thread::id> worker;
+  };
   struct Entry {
     VectorXd x;
     optim::ProblemValues values;
@@ -154,8 +159,25 @@ class Problem {
     throw Error::input("stage '" + name + "' is unknown; the stages are: coarse, eroded, last");
   }
   void run(const std::function<void()>& work) {
-    flag_.reset();
-    compute_in_thread(work, case_.threads, flag_);
+    Use& use = *use_;
+    const std::thread::id before = use.worker, me = std::this_thread::get_id();
+    // A callback of a computation may compute; another thread may not.
+    if (before != std::thread::id() && before != me)
+      throw Error::input("another thread computes with this problem; every thread needs its own");
+    if (before == std::thread::id()) flag_.reset();
+    use.worker = me;
+    try {
+      compute_in_thread(
+          [&] {
+            use.worker = std::this_thread::get_id();
+            work();
+          },
+          case_.threads, flag_);
+    } catch (...) {
+      use.worker = before;
+      throw;
+    }
+    use.worker = before;
   }
   optim::Settings settings_of(const std::string& name, const Options& options) const {
     optim::Settings out = case_.prepared().scene().optimizer;
@@ -191,13 +213,15 @@ class Problem {
       row["kkt"] = it.kkt;
       row["violation"] = it.violation;
       row["change"] = it.change;
-      if (call.get()(row).ptr() == Py_True) flag_.stop();
+      // The flag is not set, because the best design is evaluated once more at the end.
+      if (call.get()(row).ptr() == Py_True) return false;
     }
     return flag_.keeps_running();
   }
 
   Case case_;
   StopFlag flag_;
+  std::unique_ptr<Use> use_ = std::make_unique<Use>();
   std::optional<cases::DesignProblem> of_;
   std::deque<Entry> known_;
   int evaluations_ = 0;

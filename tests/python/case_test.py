@@ -108,6 +108,24 @@ class Runs(unittest.TestCase):
         self.assertEqual(design.quads.shape[0], design.density.size)
         self.assertEqual(design.quads.max() + 1, len(design.points))
 
+    def test_pandas_and_meshio_take_results(self):
+        run = flexmorph.load("short_beam", set=support.SMALL_BEAM).run()
+        design = run.designs["beam"]
+        for name in ("pandas", "meshio"):
+            try:
+                module = __import__(name)
+            except ImportError:
+                continue
+            with self.subTest(name):
+                if name == "pandas":
+                    frame = module.DataFrame(run.history)
+                    self.assertEqual(list(frame.columns), run.history.columns)
+                    self.assertEqual(len(frame), run.history.n_rows)
+                else:
+                    mesh = module.Mesh(design.points, [("quad", design.quads)],
+                                       cell_data={"density": [design.density.ravel()]})
+                    self.assertEqual(mesh.cells[0].data.shape, (design.density.size, 4))
+
     def test_a_callback_sees_and_stops(self):
         rows = []
         case = flexmorph.load("short_beam", set=support.SMALL_BEAM)

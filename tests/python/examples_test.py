@@ -15,7 +15,7 @@ EXAMPLES = support.HERE.parents[1] / "cases" / "python" / "examples"
 
 def run(name, folder):
     done = subprocess.run([sys.executable, str(EXAMPLES / name)], cwd=folder, text=True,
-                          stdin=subprocess.DEVNULL, capture_output=True, timeout=100,
+                          stdin=subprocess.DEVNULL, capture_output=True, timeout=300,
                           env={**os.environ, "MPLBACKEND": "svg"})
     assert done.returncode == 0, done.stderr
     return done.stdout

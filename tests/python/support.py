@@ -31,7 +31,7 @@ def run_program(folder, case, changes=()):
     """Run the program into a folder and return run.json."""
     options = [each for change in changes for each in ("--set", change)]
     subprocess.run([PROGRAM, "run", case, *options, "--quiet", "-o", str(folder)], check=False,
-                   stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60)
+                   stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=200)
     return json.loads((pathlib.Path(folder) / "run.json").read_text())
 
 
@@ -39,7 +39,7 @@ def run_python(script, kernel, *arguments):
     """Run a script in a process of its own with kernels of OpenBLAS, and return its output."""
     env = {**os.environ, "OPENBLAS_CORETYPE": kernel}
     done = subprocess.run([sys.executable, "-c", script, *map(str, arguments)], env=env, text=True,
-                          stdin=subprocess.DEVNULL, capture_output=True, timeout=60)
+                          stdin=subprocess.DEVNULL, capture_output=True, timeout=200)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -4,7 +4,7 @@ import sys
 import flexmorph
 
 case = flexmorph.load("short_beam", set={"design.max_volume": 0.5, "design.cell": 0.05,
-                                         "design.min_thickness": 0.05, "optimizer.max_iterations": 60})
+                                         "design.min_thickness": 0.05, "optimizer.max_iterations": 40})
 run = case.run()
 print(run.status, run.designs["beam"].results["crisp_compliance"], "J")
 run.designs["beam"].plot().figure.savefig(sys.argv[1] if len(sys.argv) > 1 else "design.svg")

@@ -146,13 +146,32 @@ class Problem:
         return {"n": self.n, "m": self.m, "problem_obj": self, "lb": self.lower, "ub": self.upper,
                 "cl": np.full(self.m, -np.inf), "cu": np.zeros(self.m)}
 
-    def scipy(self):
-        """Return the keyword arguments of ``scipy.optimize.minimize`` (trust-constr, SLSQP)."""
-        from scipy.optimize import Bounds, NonlinearConstraint
+    def scipy(self, *, hessian=False):
+        """Return the keyword arguments of ``scipy.optimize.minimize`` (trust-constr, SLSQP).
+
+        Parameters
+        ----------
+        hessian : bool, optional
+            True to add second derivatives, which trust-constr uses.
+
+        Returns
+        -------
+        dict
+        """
+        from scipy.optimize import BFGS, Bounds, NonlinearConstraint
+        if hessian:
+            self._require_hessian()
         out = {"fun": self.objective, "jac": self.gradient, "x0": self.x0,
-               "bounds": Bounds(self.lower, self.upper, keep_feasible=True)}
+               "bounds": Bounds(self.lower, self.upper)}
         if self.m:
-            out["constraints"] = NonlinearConstraint(self.constraints, -np.inf, 0, jac=self.jacobian)
+            second = BFGS()
+            if hessian:
+                def second(x, v):
+                    return self.hessian_matrix(x, v, 0.0)
+            out["constraints"] = NonlinearConstraint(self.constraints, -np.inf, 0, jac=self.jacobian,
+                                                     hess=second)
+        if hessian:
+            out["hess"] = lambda x: self.hessian_matrix(x, np.zeros(self.m), 1.0)
         return out
 
     def nlopt(self, x, grad):
