@@ -1,9 +1,9 @@
 """Drives pages of real runs in a headless Chromium: requests, slider, animation, zoom and sorting.
 
-    python3 browser_test.py PROGRAM [PICTURES]
+    python3 browser_test.py PROGRAM [TEST...]
 
-Exit code 77 (skipped) if Chromium or Selenium is absent. With PICTURES, a folder, pictures of every
-page are written there: light, dark, on a phone and as PDF.
+Exit code 77 (skipped) if Chromium or Selenium is absent. With FLEXMORPH_PICTURES, a folder, pictures
+of the page are written there: light, dark, on a phone and as PDF.
 """
 
 import base64
@@ -29,9 +29,10 @@ if not CHROMIUM or not DRIVER:
     sys.exit(77)
 
 PROGRAM = sys.argv.pop(1)
-PICTURES = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else None
+PICTURES = os.environ.get("FLEXMORPH_PICTURES")
 CHANGES = ["expect=", "time.end=0.2", "time.step=2e-3", "optimizer.max_iterations=12",
-           "esl.every=0.05", "cycle.max_cycles=1", "verify=", "output.vtk=false"]
+           "design.cell=0.01", "design.min_thickness=0.01", "esl.every=0.05",
+           "cycle.max_cycles=1", "verify=", "output.vtk=false"]
 
 
 def browser():

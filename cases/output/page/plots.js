@@ -32,17 +32,14 @@ function isOverTime(panel) {
   return panel.x.label.startsWith("time");
 }
 
-/** Draws the common cursor. */
-function drawCursor(context, area, graph) {
+/** Moves the line of the common cursor, without drawing the plot again. */
+function moveCursor(graph) {
   if (graph.cursor === undefined) return;
+  const area = graph.getArea();
   const x = graph.toDomXCoord(graph.cursor);
-  if (x < area.x || x > area.x + area.w) return;
-  context.strokeStyle = cssColor("--accent");
-  context.lineWidth = 1;
-  context.beginPath();
-  context.moveTo(x, area.y);
-  context.lineTo(x, area.y + area.h);
-  context.stroke();
+  graph.line.hidden = x < area.x || x > area.x + area.w;
+  graph.line.style.transform = `translate(${x}px, ${area.y}px)`;
+  graph.line.style.height = `${area.h}px`;
 }
 
 function graphOptions(panel, legend) {
@@ -68,7 +65,6 @@ function graphOptions(panel, legend) {
       x: { axisLabelFormatter: (v) => shown(v) },
       y: { axisLabelWidth: 70, axisLabelFormatter: (v) => shown(v) },
     },
-    underlayCallback: drawCursor,
     series: {},
   };
   panel.curves.forEach((curve, c) => {
@@ -94,15 +90,18 @@ function replacePicture(place, figure) {
     if (panel.title) all.append(element("h3", {}, panel.title));
     const legend = element("div", { class: "legend" });
     const box = element("div", { class: "graph" });
-    all.append(legend, box);
+    const line = element("div", { class: "cursor", hidden: true });
+    all.append(legend, element("div", { class: "framed" }, box, line));
     const graph = new Dygraph(box, mergedRows(panel.curves), graphOptions(panel, legend));
     graph.panel = panel;
+    graph.line = line;
     page.graphs.push(graph);
     if (isOverTime(panel)) {
       page.onTime((time) => {
         graph.cursor = time;
-        graph.renderGraph_(false);
+        moveCursor(graph);
       });
+      graph.updateOptions({ drawCallback: () => moveCursor(graph) }, true);
     }
   }
   all.append(element("p", { class: "hint" },
