@@ -1,4 +1,4 @@
-# Writes page_assets.cpp: the files of cases/output/page, the glossary, and the library of plots as
+# Writes a source file with the files of cases/output/page, the glossary, and the library of plots as
 # texts of the program.
 #
 #   cmake -DOUTPUT=<source file> -DFILES=<name=path|name=path...> -P page_assets.cmake
