@@ -7,7 +7,7 @@ cases/run.sh [CASE] [OPTION]...
 Installs missing packages, builds flexmorph and runs one case into runs/CASE.
   CASE    path of a case file or name of a shipped case (default: rotating_plate_v01)
   OPTION  option of 'flexmorph run': --set KEY=VALUE, -o FOLDER, --output FOLDER, --threads N,
-          --resume, --quiet, --condition, --explain
+          --resume, --quiet, --condition, --explain, --open
 TEXT
 }
 
@@ -28,7 +28,7 @@ for option in "$@"; do
     -o | --output) output=1 value=1 ;;
     -o?* | --output=*) output=1 ;;
     --set | --threads) value=1 ;;
-    --set=* | --threads=* | --resume | --quiet | --condition | --explain) ;;
+    --set=* | --threads=* | --resume | --quiet | --condition | --explain | --open) ;;
     *) wrong "unknown option '$option'" ;;
   esac
 done

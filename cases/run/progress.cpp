@@ -48,11 +48,12 @@ void Progress::keep_showing(const std::stop_token& stop) {
   }
 }
 
-void Progress::say(const std::string& text) {
+void Progress::say(const std::string& text, bool even_if_quiet) {
   const std::lock_guard guard(lock_);
   if (told_) return told_(text);
   end_line();
-  if (!quiet_) std::fputs(io::fitted_text(text, io::screen_width()).c_str(), stdout);
+  if (!quiet_ || even_if_quiet)
+    std::fputs(io::fitted_text(text, io::screen_width()).c_str(), stdout);
   std::fflush(stdout);
 }
 

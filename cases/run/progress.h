@@ -27,7 +27,8 @@ class Progress {
   ~Progress();
 
   /// Prints a message on a line of its own.
-  void say(const std::string& text);
+  /// @param even_if_quiet  true for messages that a quiet display prints, too
+  void say(const std::string& text, bool even_if_quiet = false);
   /// Prints a warning or an error on the error stream, also if the run is quiet. The kind is
   /// coloured if the error stream is a terminal.
   void object(const std::string& kind, const std::string& text);

@@ -172,7 +172,7 @@ int run_in_folder(const ReadyCase& ready, const std::string& directory, const Ru
   if (options.resume)
     if (const std::optional<int> code = finished_with(directory, options, file)) {
       remove_progress_of_finished(directory);
-      progress.say(directory + ": The run is complete already. Nothing was computed.");
+      progress.say(directory + ": The run is complete already. Nothing was computed.", true);
       return *code;
     }
   RunFolder folder(directory, scene, options.threads > 1,

@@ -83,8 +83,8 @@ const Key& kFrom = io::key("drive", "from")
                              })
                        .otherwise_as("required unless `formula`, `table` or `csv` is given")
                        .description(
-                           "Source of the drive: the trajectory of the case, or a function that "
-                           "a program has registered under this name.");
+                           "Source: the trajectory of the case, or a function that a program has "
+                           "registered.");
 
 /// Returns a function that is defined in [0, end] and is continued outside by the parabola of
 /// value, rate and acceleration at the nearer end.

@@ -86,7 +86,7 @@ int compare_case(const CompareOptions& wanted) {
   print_table(summary_of(comparison, outcome.results), "compare.md");
   print_text(warnings_note(outcome.results));
   print_text(convergence_note(outcome.results));
-  std::printf("%s/compare.html, .md, .csv, .svg\n", directory.c_str());
+  print_text(directory + ": compare.html, compare.md, compare.csv, compare.svg\n");
   return outcome.exit_code;
 }
 

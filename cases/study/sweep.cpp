@@ -238,7 +238,7 @@ int sweep_case(const SweepOptions& options) {
   print_table(summary_of(sweep, outcome.results), "sweep.md");
   print_text(warnings_note(outcome.results));
   print_text(convergence_note(outcome.results));
-  std::printf("%s/sweep.html, .md, .csv, .svg\n", study.directory.c_str());
+  print_text(study.directory + ": sweep.html, sweep.md, sweep.csv, sweep.svg\n");
   return outcome.exit_code;
 }
 

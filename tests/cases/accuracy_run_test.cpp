@@ -76,7 +76,7 @@ TEST(Accuracy, ReproducesTheCantileverAndWritesCasesThatRun) {
   for (size_t i = 0; i < limits.size(); ++i) EXPECT_NEAR(limits[i], 1e-5, 1e-5 * 1e-6);
   for (const char* name : {"/accuracy.md", "/accuracy.svg", "/strip_1pct.toml"})
     EXPECT_TRUE(std::filesystem::exists(folder + name)) << name << ended.out;
-  EXPECT_NE(ended.out.find("kept"), std::string::npos) << ended.out;
+  EXPECT_NE(contents_of(folder + "/accuracy.md").find("kept"), std::string::npos) << ended.out;
   const Ended run = test::flexmorph(
       scratch, {"run", folder + "/strip_0.01pct.toml", "-o", scratch / "again", "--quiet"});
   EXPECT_EQ(run.code, 0) << run.err;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "cases/assembly/build.h"
 #include "cases/check/ready.h"
@@ -127,12 +128,14 @@ TEST(KeysCommand, FindsKeysByAWord) {
   EXPECT_EQ(found.code, 0);
   EXPECT_TRUE(testing::mentions_all(found.out, {"[[body]]", "  poisson_ratio ", "[domain]"}));
   EXPECT_FALSE(contains(found.out, "  thickness "));
-  const Ended materials = flexmorph(scratch, {"keys", "material"});
+  Ended materials = flexmorph(scratch, {"keys", "material"});
+  // 80 columns, and names of tables that are longer than their column.
+  for (const std::string& line : lines_of(materials.out)) EXPECT_LE(line.size(), 80u) << line;
+  std::istringstream words(std::exchange(materials.out, ""));
+  for (std::string word; words >> word;) materials.out += word + " ";
   EXPECT_TRUE(testing::mentions_all(materials.out,
                                     {"material = \"steel\": density 7850 kg/m^3", "EN 1993-1-1",
                                      "material = \"aluminium\"", "EN 1999-1-1"}));
-  // 100 columns, and names of tables that are longer than their column.
-  for (const std::string& line : lines_of(materials.out)) EXPECT_LE(line.size(), 110u) << line;
   // The whole reference says what a number may be.
   EXPECT_TRUE(testing::mentions_all(lines_of(flexmorph(scratch, {"keys"}).out)[0] + " " +
                                         lines_of(flexmorph(scratch, {"keys"}).out)[1],

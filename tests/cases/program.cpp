@@ -58,17 +58,19 @@ Words wide_lines(const std::string& text) {
 std::string in_whole_lines(const std::string& text) {
   std::string out;
   size_t columns = 0;  // of the last line as the program has written it
+  size_t indent = 0;   // of the first line of the piece
   for (const std::string& line : lines_of(text)) {
     const size_t first = std::min(line.size(), line.find_first_not_of(' ')),
                  end = std::min(line.size(), line.find(' ', first));
     const bool continues =
-        first > 0 && first < line.size() &&
+        first > indent && first < line.size() &&
         columns + 1 + io::columns_of(line.substr(first, end - first)) > io::kColumnsOfFiles;
     if (continues && !out.empty()) {
       out.back() = ' ';
       out += line.substr(first) + "\n";
     } else {
       out += line + "\n";
+      indent = first;
     }
     columns = io::columns_of(line);
   }

@@ -41,7 +41,8 @@ inline constexpr int kTooFew = 5;
 Words wide_lines(const std::string& text);
 
 /// Returns a text of the program with the lines that it splits at 80 columns in one piece: a line
-/// that begins with spaces continues the line before if its first word did not fit there.
+/// that begins with more spaces than the one before continues it if its first word did not fit
+/// there.
 std::string in_whole_lines(const std::string& text);
 
 /// Runs the program with the given arguments until it ends. Its output is given in whole lines,

@@ -73,11 +73,14 @@ std::string without_times(const io::CsvTable& table) {
 }
 
 /// Returns all files of a folder by their path in it, without run times: these are removed from
-/// run.json and from tables, and files in `timed` are left out.
+/// run.json and from tables, and the output of the runs of a study and files in `timed` are left
+/// out.
 std::map<std::string, std::string> files_of(const std::string& folder, const Words& timed = {}) {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file() || entry.path().filename() == ".flexmorph") continue;
+    if (!entry.is_regular_file() || entry.path().filename() == ".flexmorph" ||
+        entry.path().extension() == ".log")
+      continue;
     const std::string name = fs::relative(entry.path(), folder).string(),
                       path = entry.path().string();
     if (std::find(timed.begin(), timed.end(), name) != timed.end()) continue;

@@ -389,7 +389,8 @@ TEST(MechanismRun, CheckDescribesTheMechanism) {
       flexmorph(scratch, {"check", scratch.write("rod.toml", kRod), "--set",
                           "spring=[{b='rod', stiffness=10.0}, {type='torsion', b='pointer', "
                           "damping=0.1}, {b='pointer', stiffness=1.0}]"});
-  EXPECT_TRUE(testing::mentions_all(row(spring.out, "springs"), {" 3", "2 linear", "1 torsion"}));
+  EXPECT_TRUE(testing::mentions_all(row(spring.out, "springs"), {" 3", "2 linear", "1 torsion"}))
+      << spring.err;
   // Without their two drives, rod and pointer rotate freely.
   EXPECT_TRUE(testing::mentions_all(row(spring.out, "degrees of freedom"), {" 2 ", " 0 "}));
   const std::string plate = flexmorph(scratch, {"check", "plate_pendulum"}).out;

@@ -25,7 +25,7 @@ inline std::map<std::string, std::string> lasting(const std::string& folder) {
     const std::string path = fs::relative(entry.path(), folder).string(),
                       name = entry.path().filename().string();
     if (!entry.is_regular_file() || name == ".flexmorph" || name == "report.html" ||
-        name.ends_with(".log") || name == "sweep.md")
+        name.ends_with(".log") || name == "sweep.md" || name == "sweep.html")
       continue;
     std::string text = contents_of(entry.path().string());
     if (name == "run.json") {
