@@ -134,7 +134,7 @@ installable() {
       fi
     done
     case "$chosen $line" in
-      ' '*optional) echo "No package here for '$line': tests that need it are skipped." >&2 ;;
+      ' '*optional) echo "No package here for '$line': what needs it is left out." >&2 ;;
       ' '*) echo "No package can be installed here for the line '$line' of a package list (Ubuntu: the component universe is needed)." >&2 && return 1 ;;
       *) printf '%s ' "$chosen" ;;
     esac
@@ -155,12 +155,12 @@ install_packages() {
     needed=$(echo "$missing" | sed -e '/optional$/d' -e 's/ *|.*//' | tr '\n' ' ')
     wanted=$(echo "$missing" | sed -n 's/ *|.*//; s/ *optional$//p' | tr '\n' ' ')
     if [ -z "$needed" ]; then
-      echo "Tests that need one of these Debian packages are skipped: $wanted" >&2
+      echo "What needs one of these Debian packages is left out: $wanted" >&2
       return 0
     fi
     echo "Debian packages are missing. Type this, then start again:" >&2
     echo "sudo apt-get install --no-install-recommends $needed" >&2
-    [ -z "$wanted" ] || echo "Some tests also need: $wanted" >&2
+    [ -z "$wanted" ] || echo "Parts that may be left out also need: $wanted" >&2
     exit 1
   fi
   mkdir -p "$build"
