@@ -4,6 +4,7 @@
 #include <vtkCellData.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -62,6 +63,8 @@ void add_fields(vtkFieldData* data, std::span<const Field> fields, int n, const 
         tuple[i] = rounded(static_cast<float>(value), field.bits);
       }
     }
+    if (!field.unit.empty())
+      array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field.unit.c_str());
     data->AddArray(array);
   }
 }

@@ -22,6 +22,7 @@ struct Field {
   /// Number of bits of the mantissa that are kept, at most 23. Values are rounded to so many bits,
   /// which makes files smaller: with 10 bits the relative error is at most 2⁻¹¹.
   int bits = 23;
+  std::string unit = {};  ///< Unit, written as metadata of the array (VTK: UNITS_LABEL).
 };
 
 /// Writes image data (.vti) on a grid; fields have the order of the grid (y fastest).

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "cases/assembly/joints.h"
+#include "cases/output/rigid_fit.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
 #include "fem/dynamics/mesh_changes/moving_root.h"
@@ -25,21 +26,13 @@ void append(std::vector<double>& out, const fem::FrameMotion& frame) {
   append(out, frame.origin, frame.angle);
 }
 
-/// Returns the rigid motion of points (2 n) that has the least mean squared distance from their
-/// present positions (2 n).
+/// Returns the rigid motion of points in the plane (2 n) that is nearest to their present positions
+/// (2 n).
 fem::FrameMotion nearest_pose(std::span<const double> shape, std::span<const double> points) {
-  const auto n = static_cast<Eigen::Index>(shape.size() / 2);
-  const Eigen::Map<const Eigen::Matrix2Xd> from(shape.data(), 2, n), to(points.data(), 2, n);
-  const Vec2 from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
-  double cosine = 0, sine = 0;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Vec2 a = from.col(k) - from_mean, b = to.col(k) - to_mean;
-    cosine += a.dot(b);
-    sine += a.x() * b.y() - a.y() * b.x();
-  }
+  const RigidFit fit = rigid_fit(2, shape, points);
   fem::FrameMotion out;
-  out.angle = std::atan2(sine, cosine);
-  out.origin = to_mean - fem::rotation(out.angle) * from_mean;
+  out.angle = angle_of(fit.rotation.col(0).head<2>());
+  out.origin = fit.translation.head<2>();
   return out;
 }
 

@@ -15,6 +15,13 @@ io::QuadMesh rectangle(std::span<const Vec2> corners) {
   return mesh;
 }
 
+/// Returns the von Mises stress of a plate at material points [Pa].
+std::vector<double> stress_of(const Body& plate, const fem::Body& model, const StepRecord& step,
+                              std::span<const Vec2> materials) {
+  return membrane_stress(model, step.x, materials, plate.youngs_modulus, plate.poisson_ratio,
+                         thermal_stretch(model, step.x.t, step.heating));
+}
+
 }  // namespace
 
 BodyShapes::BodyShapes(const Scene& scene, std::vector<VectorXd> densities)
@@ -32,14 +39,20 @@ DesignedSurface BodyShapes::designed(const StepRecord& step, size_t body) const 
   const size_t d = design_of(body);
   const Grid& grid = scene_.designs[d].grid;
   const VectorXd density = densities_.empty() ? VectorXd::Ones(grid.n_cells()) : densities_[d];
-  return designed_surface(step.model.body(scene_.bodies[body].name), step.x, poses_[body], grid,
-                          density);
+  const Body& drawn = scene_.bodies[body];
+  const fem::Body& model = step.model.body(drawn.name);
+  DesignedSurface out = designed_surface(model, step.x, poses_[body], grid, density);
+  out.stress = stress_of(drawn, model, step, out.middles);
+  for (size_t k = 0; k < out.stress.size(); ++k) out.stress[k] *= out.density[k];
+  return out;
 }
 
 Surface BodyShapes::deformed(const StepRecord& step, size_t body) const {
   const Body& drawn = scene_.bodies[body];
-  return deformed_surface(*drawn.row, step.model.body(drawn.name), step.x, poses_[body],
-                          step.heating);
+  const fem::Body& model = step.model.body(drawn.name);
+  Surface out = deformed_surface(*drawn.row, model, step.x, poses_[body], step.heating);
+  if (drawn.row->across) out.stress = stress_of(drawn, model, step, out.middles);
+  return out;
 }
 
 void FrameWriter::add(const StepRecord& step) {

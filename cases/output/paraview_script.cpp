@@ -68,7 +68,7 @@ def path_of(name):
 motion = path_of("motion/motion.pvd")
 designed = path_of("history.csv") is not None
 if motion:
-    field = "density" if designed else "strain_energy"
+    field = "density" if designed else "strain_energy_per_area"
     show(simple.PVDReader(FileName=motion), "motion", field, "CELLS", True)
 verified = sorted(glob.glob(os.path.join(run, "design*.vtu")))
 for path in verified:

@@ -66,18 +66,20 @@ struct OwnField {
   std::string name;
   std::vector<double> values;
   int components;
+  std::string unit;
 };
 
 std::vector<OwnField> copies_of(std::span<const io::Field> fields) {
   std::vector<OwnField> out;
   for (const io::Field& f : fields)
-    out.push_back({f.name, {f.values.begin(), f.values.end()}, f.components});
+    out.push_back({f.name, {f.values.begin(), f.values.end()}, f.components, f.unit});
   return out;
 }
 
 std::vector<io::Field> views_of(const std::vector<OwnField>& fields) {
   std::vector<io::Field> out;
-  for (const OwnField& f : fields) out.push_back({f.name, f.values, f.components});
+  for (const OwnField& f : fields)
+    out.push_back({.name = f.name, .values = f.values, .components = f.components, .unit = f.unit});
   return out;
 }
 
@@ -114,12 +116,29 @@ std::vector<std::string> RunFolder::frames() const {
   return out;
 }
 
+namespace {
+
+/// Returns the fields of the deformation, by which ParaView can displace a mesh, and of the rigid
+/// motion.
+std::vector<io::Field> displacement_fields(std::span<const double> deformation,
+                                           std::span<const double> motion, int dim) {
+  return {{.name = "displacement", .values = deformation, .components = dim, .unit = "m"},
+          {.name = "motion", .values = motion, .components = dim, .unit = "m"}};
+}
+
+}  // namespace
+
 void RunFolder::add_surface_frame(const std::string& body, const Surface& surface, double time,
                                   int part) {
-  const io::Field displacement{"displacement", surface.displacement, surface.mesh.dimension};
-  std::vector<io::Field> cells = {{"strain_energy", surface.energy}};
-  if (!surface.strain.empty()) cells.push_back({"elastic_strain", surface.strain, 3});
-  write_part(body, {surface.mesh, std::move(cells), {displacement}, time, part});
+  const int dim = surface.mesh.dimension;
+  std::vector<io::Field> cells = {
+      {.name = "strain_energy_per_area", .values = surface.energy, .unit = "J/m^2"}};
+  if (!surface.strain.empty())
+    cells.push_back({.name = "elastic_strain", .values = surface.strain, .components = 3});
+  if (!surface.stress.empty())
+    cells.push_back({.name = "von_mises", .values = surface.stress, .unit = "Pa"});
+  write_part(body, {surface.mesh, std::move(cells),
+                    displacement_fields(surface.displacement, surface.motion, dim), time, part});
   if (part == 0 && surface.mesh.dimension == 3)
     shapes_.push_back(
         {(scene_.statics ? "step " : "t = ") + io::to_text(time, 4) + (scene_.statics ? "" : " s"),
@@ -133,10 +152,11 @@ void RunFolder::add_rigid_frame(const std::string& name, const io::QuadMesh& mes
 
 void RunFolder::add_motion_frame(const std::string& body, const DesignedSurface& surface,
                                  double time, int part) {
-  const io::Field displacement{"displacement", surface.displacement, 2};
   write_part(body, {surface.mesh,
-                    {{"density", surface.density}, {"strain_energy", surface.energy}},
-                    {displacement},
+                    {{.name = "density", .values = surface.density},
+                     {.name = "strain_energy_per_area", .values = surface.energy, .unit = "J/m^2"},
+                     {.name = "von_mises", .values = surface.stress, .unit = "Pa"}},
+                    displacement_fields(surface.displacement, surface.motion, 2),
                     time,
                     part});
 }

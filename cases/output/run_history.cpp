@@ -203,8 +203,9 @@ void RunFolder::write_design_frame(const mmc::IterationReport& r) {
     const io::Field density{.name = "density", .values = view(mass), .bits = kBits};
     const io::Field tdf{.name = "tdf", .values = view(phi), .bits = kBits};
     const io::Field cells[] = {{"stiffness_factor", view(stiffness)},
-                               {"strain_energy", view(energy)}};
-    const io::Field points{"displacement", view(displacement), 2};
+                               {.name = "strain_energy", .values = view(energy), .unit = "J"}};
+    const io::Field points{
+        .name = "displacement", .values = view(displacement), .components = 2, .unit = "m"};
     std::vector<double> parameters;
     for (const Component& component : components)
       for (const double each : component.parameters()) parameters.push_back(each);

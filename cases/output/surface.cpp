@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/output/rigid_fit.h"
 #include "cases/scene/elements/row.h"
 #include "fem/dynamics/starts/driven_frame.h"
 
@@ -65,20 +66,20 @@ std::vector<double> energies(const fem::Body& body, const Cuts& cuts, const fem:
   return out;
 }
 
-/// Appends the elastic Green strain (FᵀF/s² - 1)/2 of a body in the plane at a material point.
-void add_strain(const fem::Body& body, const fem::State& x, const Vec2& material, double s,
-                std::vector<double>& out) {
-  fem::ShapeTable t;
-  const int e = body.element->locate(material, fem::Tabulate::gradient, t);
+/// Returns the elastic Green strain (FᵀF/s² - 1)/2 of a body at a material point: 11, 22, 12.
+/// @param t  storage for shape functions
+Vec3 elastic_strain(const fem::Body& body, const fem::State& x, const Vec2& material, double s,
+                    fem::ShapeTable& t) {
+  const int e = body.element->locate(material, fem::Tabulate::gradient, t),
+            dim = body.element->dim();
   const auto vectors = body.element->vectors(e);
-  Eigen::Matrix2d F = Eigen::Matrix2d::Zero();
+  Vec3 r_m(0, 0, 0), r_n(0, 0, 0);
   for (size_t k = 0; k < vectors.size(); ++k) {
-    const Vec2 q = x.q.segment<2>(body.first_dof + 2 * vectors[k]) / s;
-    F.col(0) += t.N_m(0, static_cast<Eigen::Index>(k)) * q;
-    F.col(1) += t.N_n(0, static_cast<Eigen::Index>(k)) * q;
+    const auto q = x.q.segment(body.first_dof + dim * vectors[k], dim) / s;
+    r_m.head(dim) += t.N_m(0, static_cast<Eigen::Index>(k)) * q;
+    r_n.head(dim) += t.N_n(0, static_cast<Eigen::Index>(k)) * q;
   }
-  const Eigen::Matrix2d strain = 0.5 * (F.transpose() * F - Eigen::Matrix2d::Identity());
-  for (const double each : {strain(0, 0), strain(1, 1), strain(0, 1)}) out.push_back(each);
+  return {0.5 * (r_m.dot(r_m) - 1), 0.5 * (r_n.dot(r_n) - 1), 0.5 * r_m.dot(r_n)};
 }
 
 }  // namespace
@@ -90,8 +91,9 @@ Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem
   const std::vector<double> along = fine_lines(cuts.m, fine_m), across = fine_lines(cuts.n, fine_n);
   const std::vector<double> energy = energies(body, cuts, x);
   const int rows = static_cast<int>(across.size());
-  const double stretch =
-      body.heat ? 1 + body.heat->expansion * heating * body.heat->temperature(x.t).value : 1;
+  const double stretch = thermal_stretch(body, x.t, heating);
+  fem::ShapeTable shapes;
+  std::vector<double> from;
   Surface out;
   const int dim = body.element->dim();
   out.mesh.dimension = dim;
@@ -99,20 +101,24 @@ Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem
   for (size_t i = 0; i < along.size(); ++i)
     for (size_t j = 0; j < across.size(); ++j) {
       const Vec2 material(along[i], across[j]);
-      const Vec3 r = fem::point_position(body, x, material), u = r - pose.location(material);
+      const Vec3 r = fem::point_position(body, x, material), before = pose.location(material);
       for (int c = 0; c < dim; ++c) {
         out.mesh.points.push_back(r[c]);
-        out.displacement.push_back(u[c]);
+        from.push_back(before[c]);
       }
       if (i + 1 == along.size() || j + 1 == across.size()) continue;
       const int a = static_cast<int>(i) * rows + static_cast<int>(j);
       out.mesh.quads.push_back({a, a + rows, a + rows + 1, a + 1});
+      out.middles.push_back(0.5 * Vec2(along[i] + along[i + 1], across[j] + across[j + 1]));
       if (row.draws_strain)
-        add_strain(body, x, 0.5 * Vec2(along[i] + along[i + 1], across[j] + across[j + 1]), stretch,
-                   out.strain);
+        for (const double each : elastic_strain(body, x, out.middles.back(), stretch, shapes))
+          out.strain.push_back(each);
       out.energy.push_back(
           energy[cuts.element(i / static_cast<size_t>(fine_m), j / static_cast<size_t>(fine_n))]);
     }
+  SplitDisplacements split = split_displacements(dim, from, out.mesh.points);
+  out.motion = std::move(split.motion);
+  out.displacement = std::move(split.deformation);
   return out;
 }
 
@@ -124,22 +130,48 @@ DesignedSurface designed_surface(const fem::Body& body, const fem::State& x,
   const double root = fem::grid_of(body).line_m(0).value;
   const int first = std::max(0, static_cast<int>(std::ceil((root - grid.x0) / grid.dx() - 1e-6)));
   DesignedSurface out;
+  std::vector<double> from;
   const int ny = grid.ny;
   for (int i = first; i <= grid.nx; ++i)
     for (int j = 0; j <= ny; ++j) {
       const Vec2 material = grid.node_position(i, j);
       const Vec2 p = fem::point_motion(body, x, material).position;
-      const Vec3 from = pose.location(material);
+      const Vec3 before = pose.location(material);
       for (int c = 0; c < 2; ++c) {
         out.mesh.points.push_back(p[c]);
-        out.displacement.push_back(p[c] - from[c]);
+        from.push_back(before[c]);
       }
       if (i == grid.nx || j == ny) continue;
       const int a = (i - first) * (ny + 1) + j;
       out.mesh.quads.push_back({a, a + ny + 1, a + ny + 2, a + 1});
       out.density.push_back(density[grid.cell(i, j)]);
-      out.energy.push_back(energy[cuts.element_at(grid.cell_center(i, j))]);
+      out.middles.push_back(grid.cell_center(i, j));
+      out.energy.push_back(energy[cuts.element_at(out.middles.back())]);
     }
+  SplitDisplacements split = split_displacements(2, from, out.mesh.points);
+  out.motion = std::move(split.motion);
+  out.displacement = std::move(split.deformation);
+  return out;
+}
+
+double thermal_stretch(const fem::Body& body, double t, double heating) {
+  return body.heat ? 1 + body.heat->expansion * heating * body.heat->temperature(t).value : 1;
+}
+
+std::vector<double> membrane_stress(const fem::Body& body, const fem::State& x,
+                                    std::span<const Vec2> materials, double youngs_modulus,
+                                    double poisson_ratio, double stretch) {
+  const double plane = youngs_modulus / (1 - poisson_ratio * poisson_ratio),
+               shear = youngs_modulus / (1 + poisson_ratio);
+  fem::ShapeTable shapes;
+  std::vector<double> out;
+  out.reserve(materials.size());
+  for (const Vec2& material : materials) {
+    const Vec3 e = elastic_strain(body, x, material, stretch, shapes);
+    const double s_11 = plane * (e[0] + poisson_ratio * e[1]),
+                 s_22 = plane * (e[1] + poisson_ratio * e[0]), s_12 = shear * e[2];
+    out.push_back(std::sqrt(s_11 * s_11 - s_11 * s_22 + s_22 * s_22 + 3 * s_12 * s_12));
+  }
   return out;
 }
 

@@ -10,10 +10,16 @@ struct Surface {
   io::QuadMesh mesh;  ///< Mesh with the dimension of the body; points across first, then along.
   int across = 0;     ///< Number of quads across.
 
-  /// Displacement of every point (dimension) [m], see deformed_surface().
-  std::vector<double> displacement;
+  /// Displacement of every point by the rigid motion of the body (dimension n_points) [m], see
+  /// rigid_fit().
+  std::vector<double> motion;
+  std::vector<double> displacement;  ///< Displacement relative to the rigid motion [m].
+  std::vector<Vec2> middles;         ///< Material coordinates of the middle of every quad [m].
   /// Strain energy per reference area of every quad [J/m^2]; a quad has the mean of its element.
   std::vector<double> energy;
+  /// Von Mises stress of the membrane forces of every quad of a plate [Pa]; empty if it was not
+  /// computed, see membrane_stress().
+  std::vector<double> stress;
   /// Elastic Green strain 11, 22, 12 in the middle of every quad of a beam [-], computed from F/s
   /// with s = 1 + α ΔT; empty for plates.
   std::vector<double> strain;
@@ -34,8 +40,14 @@ Surface deformed_surface(const ElementRow& row, const fem::Body& body, const fem
 struct DesignedSurface {
   io::QuadMesh mesh;                 ///< Mesh of the cells, in the plane.
   std::vector<double> density;       ///< Mass scale factor of every quad [-].
-  std::vector<double> displacement;  ///< Displacement of every point (2) [m].
+  std::vector<double> motion;        ///< Displacement by the rigid motion (2 n_points) [m].
+  std::vector<double> displacement;  ///< Displacement relative to it (2 n_points) [m].
+  std::vector<Vec2> middles;         ///< Material coordinates of the middle of every quad [m].
   std::vector<double> energy;        ///< Strain energy per area of every quad [J/m^2].
+
+  /// Von Mises stress of every quad, times its mass scale factor [Pa]; empty if it was not
+  /// computed, see membrane_stress().
+  std::vector<double> stress;
 };
 /// Returns a deformed body with one quad per cell of its design.
 /// @param body     body of a model that is prepared for x
@@ -50,6 +62,18 @@ DesignedSurface designed_surface(const fem::Body& body, const fem::State& x,
 /// Returns a disc around the origin of a frame.
 /// @param notched  true: the sector around the direction -x is left out, which shows the angle
 io::QuadMesh disc_mesh(const fem::FrameMotion& frame, double radius, bool notched);
+/// Returns the von Mises stress of the membrane forces of a plate at material points [Pa]. Its
+/// second Piola-Kirchhoff stress is S = C (FᵀF/s² - 1)/2 with the plane-stress stiffness C;
+/// stresses of bending are not contained.
+/// @param body     plate of a model that is prepared for x
+/// @param stretch  thermal stretch s = 1 + α ΔT
+std::vector<double> membrane_stress(const fem::Body& body, const fem::State& x,
+                                    std::span<const Vec2> materials, double youngs_modulus,
+                                    double poisson_ratio, double stretch);
+/// Returns the thermal stretch 1 + α ΔT of a body; 1 if it is not heated.
+/// @param heating  factor of the temperature rise, in a [static] analysis
+double thermal_stretch(const fem::Body& body, double t, double heating);
+
 /// Returns the radius with which a hub is drawn [m]: a fraction of the width of the bodies that it
 /// carries, or of their length if they have no width.
 double drawn_radius(const Scene& scene, const Hub& hub);

@@ -27,10 +27,13 @@ DESIGN = {"CellData": {"density"}, "PointData": {"tdf"}}
 FIELDS = {"CellData": {"stiffness_factor", "strain_energy"}, "PointData": {"displacement"}}
 OUTLINES = {"CellData": {"component"}}
 MOTION = {
-    "CellData": {"density", "strain_energy", "body"},
-    "PointData": {"displacement"},
+    "CellData": {"density", "strain_energy_per_area", "von_mises", "body"},
+    "PointData": {"displacement", "motion"},
 }
-FULL_MOTION = {"CellData": {"strain_energy", "body"}, "PointData": {"displacement"}}
+FULL_MOTION = {
+    "CellData": {"strain_energy_per_area", "von_mises", "body"},
+    "PointData": {"displacement", "motion"},
+}
 RIGID_MOTION = {"CellData": {"body"}}
 
 ROUND_OFF = 1e-6  # for the Float32 numbers in the files

@@ -184,8 +184,8 @@ class Solutions(unittest.TestCase):
                         callback=lambda row: p.objective(row["x"]) == row["fun"]
                         and row["iteration"] == 3)
         self.assertEqual((found.nit, found.status), (3, "observer"))
-        with self.assertRaises(ZeroDivisionError):
-            for optimizer in ("mma", "nlopt_ccsaq", "ipopt"):
+        for optimizer in ("mma", "nlopt_ccsaq", "ipopt"):
+            with self.assertRaises(ZeroDivisionError, msg=optimizer):
                 p.solve(optimizer, stages=False, callback=lambda row: 1 / 0)
 
 
