@@ -106,7 +106,7 @@ class LivePages(unittest.TestCase):
             run = subprocess.Popen([PROGRAM, "run", "four_bar", "-o", folder + "/run", "--quiet"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             try:
-                for _ in range(200):
+                for _ in range(1200):
                     if os.path.exists(page):
                         break
                     time.sleep(0.05)
