@@ -1,6 +1,7 @@
 #include "cases/output/motion_checkpoint.h"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kFormat = "flexmorph motion 2";
+const std::string kFormat = "flexmorph motion 3";
 /// Largest fraction of the time between two writes that a write may take.
 constexpr double kTimeFraction = 0.05;
 
@@ -63,19 +64,20 @@ std::optional<std::string> MotionCheckpoint::read(std::string& why) const {
     return {};
   }
   try {
-    Archive file(text.substr(head + 1));
-    std::uint64_t sum = 0, about = 0;
-    std::string rest, memory;
-    file(sum, rest);
-    if (checksum(rest) != sum) throw Error::input("");
-    Archive parts(std::move(rest));
+    const size_t rest = head + 1 + sizeof(std::uint64_t);
+    std::uint64_t sum = 0, about = 0, size = 0;
+    if (text.size() < rest) throw Error::input("");
+    std::memcpy(&sum, text.data() + head + 1, sizeof sum);
+    if (checksum(std::string_view(text).substr(rest)) != sum) throw Error::input("");
     std::vector<std::string> frames;
-    parts(about, frames, memory);
+    Archive file(text.substr(rest));
+    file(about, frames, size);
+    if (size > text.size() - rest) throw Error::input("");
     if (about != about_) why = "it belongs to another case or design";
     for (const std::string& frame : frames)
       if (why.empty() && !fs::exists(folder_.path() + "/" + frame))
         why = "the file " + frame + " is missing";
-    if (why.empty()) return memory;
+    if (why.empty()) return text.substr(text.size() - size);
   } catch (const Error&) {
     why = "it is damaged";
   }
@@ -86,16 +88,20 @@ bool MotionCheckpoint::is_due() const {
   return Clock::now() - written_ >= std::max(every_, took_ / kTimeFraction);
 }
 
-void MotionCheckpoint::write(const std::string& memory, std::vector<std::string> frames) {
+void MotionCheckpoint::write(std::string_view steps, std::string_view motion,
+                             std::vector<std::string> frames) {
   const Clock::time_point begin = Clock::now();
-  Archive parts, file;
-  std::string contents = memory;
-  parts(about_, frames, contents);
-  std::string rest = parts.bytes();
-  std::uint64_t sum = checksum(rest);
-  file(sum, rest);
-  io::write_file(folder_.file(name_), kFormat + ", " + kVersion + "\n" + file.bytes(),
-                 io::Sync::now);
+  Archive head;
+  std::uint64_t sum = 0, size = steps.size() + motion.size();
+  head(about_, frames, size);
+  // Archives are large: the contents are put together in one string, which is written as it is.
+  std::string contents = kFormat + ", " + kVersion + "\n";
+  const size_t at = contents.size();
+  contents.reserve(at + sizeof sum + head.bytes().size() + size);
+  contents.append(sizeof sum, '\0').append(head.bytes()).append(steps).append(motion);
+  sum = checksum(std::string_view(contents).substr(at + sizeof sum));
+  std::memcpy(contents.data() + at, &sum, sizeof sum);
+  io::write_file(folder_.file(name_), contents, io::Sync::now);
   written_ = Clock::now();
   took_ = written_ - begin;
 }

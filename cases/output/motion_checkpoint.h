@@ -3,6 +3,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cases/output/run_folder.h"
@@ -14,9 +15,9 @@ namespace flexmorph::cases {
 ///
 /// The file consists of a line with its format and the version of the program, a checksum of the
 /// rest, and the rest: a checksum of everything that the motion depends on (its case with the files
-/// that the case reads, its design and mesh), the names of the frames that must exist, and the
-/// archive of the motion, in the byte order of the machine. Each write replaces the whole file,
-/// which is on the disk before the motion continues.
+/// that the case reads, its design and mesh), the names of the frames that must exist, and the size
+/// and the bytes of the archive of the motion, in the byte order of the machine. Each write
+/// replaces the whole file, which is on the disk before the motion continues.
 class MotionCheckpoint {
  public:
   /// Prepares the checkpoint of a motion; nothing is written.
@@ -35,10 +36,11 @@ class MotionCheckpoint {
   /// until the next one, so that writing takes at most a twentieth of the run time.
   bool is_due() const;
   /// Writes the checkpoint file as a whole.
-  /// @param memory  archive of the motion
+  /// @param steps   first part of the archive of the motion: what is kept of its steps
+  /// @param motion  second part of the archive
   /// @param frames  files that the motion has written, with names as for RunFolder::file()
   /// @throws Error (numerical) when it cannot be written; the previous file is kept.
-  void write(const std::string& memory, std::vector<std::string> frames);
+  void write(std::string_view steps, std::string_view motion, std::vector<std::string> frames);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -170,7 +170,7 @@ class Resuming {
  private:
   void resume(fem::MotionSettings& motion) {
     std::string why;
-    const std::optional<std::string> kept = checkpoint_->read(why);
+    std::optional<std::string> kept = checkpoint_->read(why);
     const auto say = [&](const std::string& words) {
       if (request_.resumed) request_.resumed(request_.phase + words);
     };
@@ -180,7 +180,7 @@ class Resuming {
                        : ", because " + request_.checkpoint + " cannot be used: " + why + "."));
       return;
     }
-    Archive memory(*kept);
+    Archive memory(std::move(*kept));
     steps_.archive(memory);
     memory(motion.memory);
     say(": The computation resumes at t = " + io::to_text(out_.record.time().back(), 6) + " s.");
@@ -191,10 +191,12 @@ class Resuming {
     if (checkpoint_ && (ends || checkpoint_->is_due())) {
       Archive memory;
       steps_.archive(memory);
-      std::string motion = save_checkpoint();
-      memory(motion);
-      checkpoint_->write(memory.bytes(), request_.frames_every > 0 ? folder_->frames()
-                                                                   : std::vector<std::string>());
+      const std::string motion = save_checkpoint();
+      std::uint64_t size = motion.size();  // the archive of a string: size and bytes
+      memory(size);
+      checkpoint_->write(
+          memory.bytes(), motion,
+          request_.frames_every > 0 ? folder_->frames() : std::vector<std::string>());
     }
     if (ends) throw Interrupted();
   }

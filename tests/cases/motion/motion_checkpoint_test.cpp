@@ -18,7 +18,7 @@ class Checkpoints : public ::testing::Test {
  protected:
   Checkpoints() : scene_(read("four_bar")), folder_(scratch_ / "run", scene_) {
     folder_.write_text("case.toml", "title = \"one\"\n");
-    one().write(memory_, {});
+    one().write(memory_, "", {});
   }
   MotionCheckpoint one(const std::string& about = "a design") {
     return {folder_, "motion.checkpoint", about, 1};
@@ -44,7 +44,7 @@ TEST_F(Checkpoints, GiveBackWhatTheyKeep) {
   std::string why = "?";
   EXPECT_EQ(one().read(why), memory_);
   EXPECT_EQ(why, "");
-  one().write("later", {});
+  one().write("lat", "er", {});
   EXPECT_EQ(one().read(why), "later");
 }
 
@@ -88,14 +88,14 @@ TEST_F(Checkpoints, AreThoseOfOneCaseAndDesign) {
   EXPECT_TRUE(contains(refusal("another design"), "another case or design"));
   folder_.write_text("inputs/turn.csv", "0, 0\n");
   EXPECT_TRUE(contains(refusal(), "another case or design"));
-  one().write(memory_, {});
+  one().write(memory_, "", {});
   folder_.write_text("inputs/turn.csv", "0, 1\n");
   EXPECT_TRUE(contains(refusal(), "another case or design"));
 }
 
 TEST_F(Checkpoints, NeedTheirFrames) {
   folder_.write_text("motion/a.vtu", "");
-  one().write(memory_, {"motion/a.vtu"});
+  one().write("", memory_, {"motion/a.vtu"});
   std::string why;
   EXPECT_EQ(one().read(why), memory_) << why;
   std::filesystem::remove(folder_.path() + "/motion/a.vtu");
