@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
 namespace flexmorph::fem {
 namespace {
@@ -125,6 +126,21 @@ void spread(const Grid& grid, int column, const Vec2& force, double moment,
   }
 }
 
+/// Returns the whole number next to x; nothing if x differs from it by more than rounding errors.
+std::optional<int> whole(double x) {
+  if (std::abs(x - std::round(x)) > 1e-6) return {};
+  return static_cast<int>(std::lround(x));
+}
+
+/// Returns the column of nodes at a coordinate along the plate. @throws Error (input) if there is
+/// none.
+int column_at(const Grid& grid, double x) {
+  if (const auto column = whole((x - grid.x0) / grid.dx())) return *column;
+  throw Error::input(
+      "a force along an edge must be at a column of nodes of the design mesh; none is at " +
+      std::to_string(x) + " m");
+}
+
 /// Adds the d'Alembert forces of point masses; out.acceleration must be set.
 void add_masses(const Grid& grid, std::span<const AttachedMass> masses, EslSet& out) {
   for (const AttachedMass& m : masses) {
@@ -136,10 +152,13 @@ void add_masses(const Grid& grid, std::span<const AttachedMass> masses, EslSet& 
 }  // namespace
 
 int node_at(const Grid& grid, const Vec2& point) {
-  const double i = (point.x() - grid.x0) / grid.dx(), j = (point.y() - grid.y0) / grid.dy();
-  if (std::abs(i - std::round(i)) > 1e-6 || std::abs(j - std::round(j)) > 1e-6)
-    throw Error::input("masses, pins and forces must be at nodes of the design mesh");
-  return grid.node(static_cast<int>(std::lround(i)), static_cast<int>(std::lround(j)));
+  const std::optional<int> i = whole((point.x() - grid.x0) / grid.dx()),
+                           j = whole((point.y() - grid.y0) / grid.dy());
+  if (!i || !j)
+    throw Error::input(
+        "masses, pins and forces must be at nodes of the design mesh; no node is at (" +
+        std::to_string(point.x()) + ", " + std::to_string(point.y()) + ") m");
+  return grid.node(*i, *j);
 }
 
 std::vector<AttachedForce> joint_forces(Workspace& model, const State& x, const Body& body,
@@ -200,12 +219,11 @@ EslSet equivalent_static_load(Workspace& model, const State& x, const MovingRoot
   add_masses(grid, masses, out);
   for (const AttachedForce& f : forces) {
     const Vec2 force = to_hub * f.force;
-    const int node = node_at(grid, f.material);
     if (!f.spread) {
-      out.forces.push_back({node, force});
+      out.forces.push_back({node_at(grid, f.material), force});
       continue;
     }
-    const int column = node / (grid.ny + 1);
+    const int column = column_at(grid, f.material.x());
     spread(grid, column, force, f.moment, out.forces);
     if (hot && f.held && column == grid.nx) {
       const double growth = growth_of_edge(body, x, grid, column);

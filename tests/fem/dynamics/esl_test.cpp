@@ -155,26 +155,33 @@ TEST_F(Esl, PointMassPushesWithItsInertia) {
   EXPECT_THROW(load(x, {&between, 1}), Error);
 }
 
-// Distributed forces have the prescribed resultant and moment in the axes of the hub.
+// Distributed forces have the prescribed resultant and moment in the axes of the hub, also if no
+// node is at the middle of the edge.
 TEST_F(Esl, SpreadForcesKeepResultantAndMoment) {
   model.prepare(kTime);
   const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)
                       .state(kTime);
-  const AttachedForce edge{{kEnd, 0}, true, {3, -5}, 0.7}, point{{kEnd, 0.02}, false, {1, 2}, 0};
-  const EslSet set = load(x, {}, {}, std::vector{edge, point});
-  Vec2 force(0, 0);
-  double moment = 0;
-  for (size_t i = 0; i + 1 < set.forces.size(); ++i) {
-    const int node = set.forces[i].node;
-    ASSERT_EQ(node / (grid.ny + 1), grid.nx);
-    const double y = grid.node_position(grid.nx, node % (grid.ny + 1)).y();
-    force += set.forces[i].force;
-    moment -= y * set.forces[i].force.x();
+  for (const int rows : {10, 5, 1}) {
+    grid.ny = rows;
+    const double top = grid.y0 + grid.height;
+    const AttachedForce edge{{kEnd, 0}, true, {3, -5}, 0.7}, point{{kEnd, top}, false, {1, 2}, 0};
+    const EslSet set = load(x, {}, {}, std::vector{edge, point});
+    Vec2 force(0, 0);
+    double moment = 0;
+    for (size_t i = 0; i + 1 < set.forces.size(); ++i) {
+      const int node = set.forces[i].node;
+      ASSERT_EQ(node / (grid.ny + 1), grid.nx);
+      const double y = grid.node_position(grid.nx, node % (grid.ny + 1)).y();
+      force += set.forces[i].force;
+      moment -= y * set.forces[i].force.x();
+    }
+    EXPECT_LT((force - turn(kTime).transpose() * edge.force).norm(), 1e-14) << rows;
+    EXPECT_NEAR(moment, edge.moment, 1e-14) << rows;
+    EXPECT_EQ(set.forces.back().node, grid.node(30, rows));
+    EXPECT_LT((set.forces.back().force - turn(kTime).transpose() * point.force).norm(), 1e-15);
   }
-  EXPECT_LT((force - turn(kTime).transpose() * edge.force).norm(), 1e-14);
-  EXPECT_NEAR(moment, edge.moment, 1e-14);
-  EXPECT_EQ(set.forces.back().node, grid.node(30, 7));
-  EXPECT_LT((set.forces.back().force - turn(kTime).transpose() * point.force).norm(), 1e-15);
+  const AttachedForce between{{kEnd - 0.3 * grid.dx(), 0}, true, {3, -5}, 0.7};
+  EXPECT_THROW(load(x, {}, {}, std::vector{between}), Error);
 }
 
 // A root between two columns is assigned to the nearer column; the fields outside do not change.
