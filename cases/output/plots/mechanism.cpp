@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "cases/output/plots/plots.h"
 #include "cases/scene/joints/row.h"
 
@@ -110,7 +112,9 @@ io::Figure joint_forces_plot(const Scene& scene, const MotionRecord& motion) {
   for (const Joint& joint : scene.joints) {
     if (!joint.named) continue;
     const bool acts_on_a = joint.b.on_ground();
-    const std::string title = joint.name + ", on " + (acts_on_a ? joint.a.body : joint.b.body);
+    const std::vector<std::string>& redundant = motion.result.redundant_joints;
+    const std::string title = joint.name + ", on " + (acts_on_a ? joint.a.body : joint.b.body) +
+                              (std::ranges::count(redundant, joint.name) ? ", not unique" : "");
     const auto add = [&](const std::vector<std::pair<const char*, const char*>>& quantities,
                          const char* label) {
       io::Panel panel;

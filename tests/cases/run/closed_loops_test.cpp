@@ -190,6 +190,8 @@ TEST_P(CoupledWheels, TurnTogether) {
     const std::string names = written["motion"]["not_unique_forces"];
     EXPECT_TRUE(testing::mentions_all(names, {"pin00", "pin01", "axle1"})) << names;
     EXPECT_TRUE(testing::mentions(written.dump(), "not unique"));
+    EXPECT_TRUE(testing::mentions_all(contents_of(scratch / "out/plots/joint_forces.svg"),
+                                      {"pin00, on", "not unique"}));
   }
 }
 INSTANTIATE_TEST_SUITE_P(Sets, CoupledWheels,
