@@ -24,7 +24,7 @@ constexpr double kBytesPerNumber = 8;
 // number in a table; in a frame for ParaView the header, a point in the plane and a point in space;
 // a cell and a component in a frame of a design, and in a frame with all its fields; a cell in its
 // exports; a point in a picture of a body in space.
-constexpr double kProgram = 36e6, kReport = 5e5, kCsvNumber = 17;
+constexpr double kProgram = 56e6, kReport = 5e5, kCsvNumber = 17;
 constexpr double kFrame = 1600, kPlanePoint = 19, kSpacePoint = 34;
 constexpr double kDesignCell = 4, kDesignComponent = 35, kFieldsCell = 18, kOutlineComponent = 900,
                  kDesignExports = 250, kPicturePoint = 190;
@@ -32,11 +32,14 @@ constexpr double kDesignCell = 4, kDesignComponent = 35, kFieldsCell = 18, kOutl
 constexpr double kBytesPerEntry = 40;
 // A cell of a design: scale factors, topology description function and derivatives.
 constexpr double kCell = 1500;
-// Number of tangents whose memory a body meshed by cells needs, because its factorizations are
-// unsymmetric and its mesh grows line by line.
-constexpr double kCellCopies = 6;
-// Number of copies of the load vectors of a design: forces, displacements and solver work space.
-constexpr double kLoadCopies = 9;
+// Number of tangents whose memory a body meshed by cells needs: for the factorization and the
+// matrices of the steps, and more where the mesh grows line by line.
+constexpr double kCellCopies = 3, kGrowingCellCopies = 5;
+// Number of copies of the load vectors of a design: forces, displacements and solver work space;
+// in the heat also thermal forces and the expansion at held edges.
+constexpr double kLoadCopies = 9, kHeatedLoadCopies = 20;
+// Verification of the outline of a design by triangles.
+constexpr double kOutlineMesh = 3e7;
 
 double sum_of(const std::vector<ResourceItem>& shares) {
   double sum = 0;
@@ -153,7 +156,8 @@ void add_motions(const Scene& scene, ResourceEstimate& out) {
   if (scene.verifies_on_cells()) {
     const Scene cells = on_cells(scene, scene.verify->cells);
     double bytes = 0;
-    for (const Body& body : cells.bodies) bytes += kCellCopies * moving_bytes(cells, body, 1);
+    for (const Body& body : cells.bodies)
+      bytes += (body.flow ? kGrowingCellCopies : kCellCopies) * moving_bytes(cells, body, 1);
     out.memory.push_back({"the verification mesh", "verify.cells", bytes});
   } else if (const double finer = finest(scene); finer > 1) {
     double bytes = 0;
@@ -187,9 +191,11 @@ void add_design(const Scene& scene, const BodyDesign& d, ResourceEstimate& out) 
   const double narrow = std::min(g.nx, g.ny);
   const double factor = scene.domain ? n * 24 * std::log2(1 + narrow) : n * (2.0 * g.ny + 5);
   out.memory.push_back({name, cell, kBytesPerNumber * factor + kCell * cells});
+  out.memory.push_back({"the verification of the outline of '" + d.body + "'", cell, kOutlineMesh});
+  const double copies = scene.has_heat() ? kHeatedLoadCopies : kLoadCopies;
   if (scene.esl)
     out.memory.push_back({"the loads of '" + d.body + "'", "esl.every",
-                          kBytesPerNumber * kLoadCopies * n * scene.esl->count(scene.time.end)});
+                          kBytesPerNumber * copies * n * scene.esl->count(scene.time.end)});
   const double components = d.n_components();
   out.disk.push_back({"exports of '" + d.body + "'", cell, kDesignExports * cells});
   const double every = scene.output.vtk ? scene.output.design_every : 0;
@@ -315,9 +321,12 @@ double read_duration(const std::string& option, const std::string& text) {
 }
 
 std::string duration_text(double seconds) {
-  if (seconds < 120) return io::to_text(seconds, 2) + " s";
-  if (seconds < 7200) return io::to_text(seconds / 60, 2) + " min";
-  if (seconds < 172800) return io::to_text(seconds / 3600, 2) + " h";
+  const auto number = [](double x) {
+    return x < 99.5 ? io::to_text(x, 2) : std::to_string(std::lround(x));
+  };
+  if (seconds < 120) return number(seconds) + " s";
+  if (seconds < 7200) return number(seconds / 60) + " min";
+  if (seconds < 172800) return number(seconds / 3600) + " h";
   return io::to_text(seconds / 86400, 3) + " days";
 }
 

@@ -11,8 +11,9 @@ namespace {
 
 // Mean numbers per time step of Newton's method: evaluations of the force (the evaluation of the
 // energies counts as one), linear solutions, and tangents. With material flow a tangent is outdated
-// sooner. On cells with material flow the number is the one that gives the measured 20 s of a motion
-// of rotating_plate_v01; it accounts for factorizations that are faster than those of coarse meshes.
+// sooner. On cells with material flow the number is the one that gives the measured 20 s of a
+// motion of rotating_plate_v01; it accounts for factorizations that are faster than those of coarse
+// meshes.
 constexpr double kForces = 7, kSolutions = 5, kTangents = 0.1, kTangentsOfFlow = 0.4,
                  kTangentsOfFlowOnCells = 0.12;
 constexpr double kStaticIterations = 3;  // per step of a static path, each with a new tangent
@@ -41,7 +42,7 @@ constexpr double kMotionRate = 5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
                  kPointSeconds = 2e-7;
 // Time of a motion on cells with its adjoint computation, divided by the time of the motion.
 constexpr double kGradient = 3;
-constexpr double kCellSeconds = 1.5e-6, kStart = 0.1;
+constexpr double kCellSeconds = 1.5e-6, kStart = 0.25;
 // Seconds per component: of the exact outline that constraints of widths need in an iteration, and
 // of a crisp design. Seconds per cell of a frame of a design. Seconds of the verification of an
 // outline: constant, per component, and per component and load.
@@ -185,12 +186,16 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
                             ? kRigid * 1e2
                             : step_operations(scene, *mechanism).total();
     motion = resources.steps * step / kMotionRate;
-    frames = resources.frames * kFrameSeconds * static_cast<double>(scene.bodies.size());
+    frames = resources.frames * kFrameSeconds *
+             static_cast<double>(scene.bodies.size() + scene.rigid_bodies.size());
     for (const BodyDesign& d : scene.designs)
       frames += resources.frames * d.grid.nx * d.grid.ny * kPointSeconds;
   }
   if (scene.designs.empty())
-    return {{.name = scene.statics ? "statics" : "motion", .seconds = motion + frames}};
+    return {
+        {.name = scene.statics ? "statics" : "motion",
+         .seconds = motion + frames,
+         .may_end_early = scene.statics && scene.statics->path != fem::StaticSettings::Path::load}};
   const PhaseCost design{.name = "design", .seconds = design_seconds(scene), .may_end_early = true};
   const PhaseCost outlines{.name = "verification of outlines", .seconds = outline_seconds(scene)};
   if (scene.domain) return {design, outlines};
@@ -231,9 +236,12 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
   return out;
 }
 
-double expected_seconds(const Scene& scene, const Mechanism* mechanism) {
-  double out = kStart;
-  for (const PhaseCost& phase : phase_costs(scene, mechanism)) out += phase.seconds;
+ExpectedSeconds expected_seconds(const Scene& scene, const Mechanism* mechanism) {
+  ExpectedSeconds out{kStart, kStart};
+  for (const PhaseCost& phase : phase_costs(scene, mechanism)) {
+    out.most += phase.seconds;
+    if (phase.cycle <= 1) out.one_cycle += phase.seconds;
+  }
   return out;
 }
 

@@ -41,12 +41,17 @@ struct IterationCost {
 std::vector<IterationCost> iteration_costs(const Scene& scene);
 
 /// Returns the phases of a run in the order in which they run, with all permitted cycles and
-/// iterations. The sum is within a factor of three for the shipped cases on one core of 2020; with
-/// adaptive steps it is a lower bound.
+/// iterations. The sum of the first cycle is within a factor of three for the shipped cases on one
+/// core of 2020; with adaptive steps it is a lower bound.
 /// @param mechanism  mechanism of a scene that moves, else null
 std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanism);
 
-/// Returns the expected CPU time of a run [s], the sum of phase_costs() and the start.
-double expected_seconds(const Scene& scene, const Mechanism* mechanism);
+/// The expected CPU time of a run [s].
+struct ExpectedSeconds {
+  double one_cycle = 0;  ///< Time if the first cycle of motion and design is the last one.
+  double most = 0;       ///< Time with all permitted cycles and iterations.
+};
+/// Returns the expected CPU time of a run: the sums of phase_costs() and the start.
+ExpectedSeconds expected_seconds(const Scene& scene, const Mechanism* mechanism);
 
 }  // namespace flexmorph::cases

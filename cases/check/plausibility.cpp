@@ -278,10 +278,16 @@ std::string disk_text(const Scene& scene, const Mechanism* mechanism, const Mach
                     resource_estimate.step_key == "static.max_steps",
              least = scene.time.tolerance.has_value();
   const std::string bound = most ? "at most about " : least ? "at least about " : "about ";
+  const ExpectedSeconds seconds = expected_seconds(scene, mechanism);
+  const bool cycles = seconds.one_cycle < 0.9 * seconds.most;
   return summary_row("expected",
                      "memory about " + of_all(resource_estimate.memory_bytes(), machine.memory) +
-                         ", time " + bound + duration_text(expected_seconds(scene, mechanism)) +
-                         ", disk " + (most ? "at most about " : "about ") +
+                         ", time " +
+                         (cycles ? "about " + duration_text(seconds.one_cycle) +
+                                       " with one cycle of motion and design, "
+                                 : std::string()) +
+                         bound + duration_text(seconds.most) + ", disk " +
+                         (most ? "at most about " : "about ") +
                          of_all(resource_estimate.disk_bytes(), machine.disk) + " free") +
          phases_text(scene, mechanism);
 }

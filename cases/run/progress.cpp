@@ -121,9 +121,10 @@ void Progress::iteration(const mmc::IterationReport& r) {
   line(head, tail, r.iteration == 1 || r.iteration % 25 == 0);
 }
 
-void Progress::way(const std::string& phase, double part, const std::string& words) {
+void Progress::way(const std::string& phase, double part, const std::string& words,
+                   bool may_end_early) {
   const std::lock_guard guard(lock_);
-  plan_.advance(phase, part, {1 - part, 1 - part}, seconds());
+  plan_.advance(phase, part, {may_end_early ? 0 : 1 - part, 1 - part}, seconds());
   watcher_(with_time(phase + ": " + words));
   if (quiet_) return;
   const double pause = std::chrono::duration<double>(Clock::now() - shown_).count();

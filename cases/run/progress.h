@@ -45,7 +45,9 @@ class Progress {
   /// Shows the progress of a phase.
   /// @param part   completed fraction of the phase, 0..1
   /// @param words  position of the phase in words: "t = 0.3 of 1 s"
-  void way(const std::string& phase, double part, const std::string& words);
+  /// @param may_end_early  true if the phase may end before its fraction is 1
+  void way(const std::string& phase, double part, const std::string& words,
+           bool may_end_early = false);
 
   /// Returns the phase, body, cycle and iteration that were reported last.
   Failure where() const;

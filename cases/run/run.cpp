@@ -26,15 +26,19 @@ namespace {
 /// Follows the path of equilibria of a [static] analysis.
 /// @param unfinished  receives the rows before a failure if there is no run folder
 PathRecord run_statics(const RunContext& run, std::optional<PathRecord>& unfinished) {
-  const double to = run.scene().statics->to;
+  const double to = run.scene().statics->to, most = run.scene().statics->max_steps;
+  // A path of arc length turns back at limit points. Its number of steps has only an upper bound.
+  const bool turns = run.scene().statics->path != fem::StaticSettings::Path::load;
+  double steps = 0;
   run.progress.begin("statics");
   PathRequest request;
   if (run.folder == nullptr) request.unfinished = &unfinished;
   request.condition = run.condition;
   request.keep_running = run.keep_running;
   request.reached = [&](double factor) {
-    run.progress.way("statics", std::clamp(factor / to, 0.0, 1.0),
-                     "load factor " + io::to_text(factor, 4) + " of " + io::to_text(to, 4));
+    const double part = turns ? steps++ / most : factor / to;
+    run.progress.way("statics", std::clamp(part, 0.0, 1.0),
+                     "load factor " + io::to_text(factor, 4) + " of " + io::to_text(to, 4), turns);
   };
   PathRecord out = run_path(run.prepared, request, run.folder);
   run.progress.say("statics: load factor " + io::to_text(out.result.factor, 5) + " reached after " +
