@@ -32,12 +32,12 @@ constexpr double kDesignCell = 4, kDesignComponent = 35, kFieldsCell = 18, kOutl
 constexpr double kBytesPerEntry = 40;
 // A cell of a design: scale factors, topology description function and derivatives.
 constexpr double kCell = 1500;
-// Number of tangents whose memory a body meshed by cells needs: for the factorization and the
-// matrices of the steps, and more where the mesh grows line by line.
-constexpr double kCellCopies = 3, kGrowingCellCopies = 5;
-// Number of copies of the load vectors of a design: forces, displacements and solver work space;
-// in the heat also thermal forces and the expansion at held edges.
-constexpr double kLoadCopies = 9, kHeatedLoadCopies = 20;
+// Number of tangents whose memory a body meshed by cells needs.
+constexpr double kCellCopies = 2;
+// Number of copies of the load vectors of a design: its loads; and while it is computed also
+// forces, displacements and solver work space, in the heat also thermal forces and the expansion at
+// held edges.
+constexpr double kLoadCopies = 2, kWorkCopies = 7, kHeatedWorkCopies = 18;
 // Verification of the outline of a design by triangles.
 constexpr double kOutlineMesh = 3e7;
 
@@ -156,8 +156,7 @@ void add_motions(const Scene& scene, ResourceEstimate& out) {
   if (scene.verifies_on_cells()) {
     const Scene cells = on_cells(scene, scene.verify->cells);
     double bytes = 0;
-    for (const Body& body : cells.bodies)
-      bytes += (body.flow ? kGrowingCellCopies : kCellCopies) * moving_bytes(cells, body, 1);
+    for (const Body& body : cells.bodies) bytes += kCellCopies * moving_bytes(cells, body, 1);
     out.memory.push_back({"the verification mesh", "verify.cells", bytes});
   } else if (const double finer = finest(scene); finer > 1) {
     double bytes = 0;
@@ -180,6 +179,12 @@ void add_motions(const Scene& scene, ResourceEstimate& out) {
                       out.frames * frame_bytes(scene)});
 }
 
+/// Returns the first of the designs with the largest number of cells.
+const BodyDesign& largest_design(const Scene& scene) {
+  return *std::ranges::max_element(scene.designs, {},
+                                   [](const BodyDesign& d) { return 1.0 * d.grid.nx * d.grid.ny; });
+}
+
 void add_design(const Scene& scene, const BodyDesign& d, ResourceEstimate& out) {
   const Grid& g = d.grid;
   const std::string path = "design" + (scene.designs.size() > 1 ? "." + d.body : ""),
@@ -190,9 +195,15 @@ void add_design(const Scene& scene, const BodyDesign& d, ResourceEstimate& out) 
   // The factorization is banded for moving bodies, and uses nested dissection for static plates.
   const double narrow = std::min(g.nx, g.ny);
   const double factor = scene.domain ? n * 24 * std::log2(1 + narrow) : n * (2.0 * g.ny + 5);
-  out.memory.push_back({name, cell, kBytesPerNumber * factor + kCell * cells});
-  out.memory.push_back({"the verification of the outline of '" + d.body + "'", cell, kOutlineMesh});
-  const double copies = scene.has_heat() ? kHeatedLoadCopies : kLoadCopies;
+  // Designs that are computed one after the other use the same memory.
+  const bool counts = d.shares_mass || &d == &largest_design(scene);
+  out.memory.push_back({name, cell, (counts ? kBytesPerNumber * factor : 0) + kCell * cells});
+  if (counts)
+    out.memory.push_back(
+        {"the verification of the outline of '" + d.body + "'", cell, kOutlineMesh});
+  const double copies = kLoadCopies + (!counts            ? 0
+                                       : scene.has_heat() ? kHeatedWorkCopies
+                                                          : kWorkCopies);
   if (scene.esl)
     out.memory.push_back({"the loads of '" + d.body + "'", "esl.every",
                           kBytesPerNumber * copies * n * scene.esl->count(scene.time.end)});

@@ -50,6 +50,7 @@ TEST(ResourceEstimate, IsThatOfMeasuredRuns) {
       {"heated_boom", {}, 593, 81.0},
       {"slider_crank_designed", {}, 437, 119},
       {"telescopic_crane", {}, 474, 81.6},
+      {"motion_platform", {}, 617, 167},
       {"short_beam", {}, 89.6, 6.5},
       {"short_beam", {"design.cell=0.00625", "optimizer.max_iterations=10"}, 333, 17.7},
       {"bridge", {}, 123, 27.7},
