@@ -11,11 +11,11 @@ namespace {
 
 // Mean numbers per time step of Newton's method: evaluations of the force (the evaluation of the
 // energies counts as one), linear solutions, and tangents. With material flow a tangent is outdated
-// sooner. On cells with material flow the number is the one that gives the measured 20 s of a
-// motion of rotating_plate_v01; it accounts for factorizations that are faster than those of coarse
-// meshes.
-constexpr double kForces = 7, kSolutions = 5, kTangents = 0.1, kTangentsOfFlow = 0.4,
-                 kTangentsOfFlowOnCells = 0.12;
+// sooner.
+constexpr double kForces = 7, kSolutions = 5, kTangents = 0.1, kTangentsOfFlow = 0.4;
+// Tangents for every mesh line of cells that is inserted or removed: the number that gives the
+// measured times of four shipped cases.
+constexpr double kTangentsOfLine = 1;
 constexpr double kStaticIterations = 3;  // per step of a static path, each with a new tangent
 
 // Operations of a sparse factorization divided by n b², for n unknowns and the bandwidth b.
@@ -95,6 +95,15 @@ double design_operations(const Scene& scene, const BodyDesign& d) {
   return n * band * (band + 3 * loads);
 }
 
+/// Returns the number of mesh lines of cells that are inserted or removed in a motion.
+double line_changes(const Body& body, double end) {
+  constexpr int kSamples = 400;
+  double sum = 0;
+  for (int k = 0; k < kSamples; ++k)
+    sum += std::abs(body.length_at(end * (k + 1) / kSamples) - body.length_at(end * k / kSamples));
+  return sum / body.cell;
+}
+
 /// Returns the CPU time of one motion on the cells of the designs [s].
 /// @param parts  elements per cell of the designs in each direction
 /// @param cell   size of the elements if they are larger than the cells [m]; 0: not larger
@@ -111,7 +120,9 @@ double cells_seconds(const Scene& scene, double steps, int parts, double cell = 
                  along = 0.5 * (body.length + body.longest(cells.time.end)) / (larger * body.cell),
                  across = body.elements[1] / larger,
                  band = (std::min(along, across) + 2) * body.dim(),
-                 tangents = body.flow ? kTangentsOfFlowOnCells : kTangents;
+                 tangents = body.flow ? kTangentsOfLine * line_changes(body, cells.time.end) /
+                                            (larger * steps)
+                                      : kTangents;
     step += along * across * (kForces * each.force + tangents * each.tangent);
     step += along * across * body.dim() * band * (tangents * kFactor * band + 4 * kSolutions);
   }
