@@ -43,11 +43,13 @@ constexpr double kMotionRate = 5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
 // Time of a motion on cells with its adjoint computation, divided by the time of the motion.
 constexpr double kGradient = 3;
 constexpr double kCellSeconds = 1.5e-6, kStart = 0.25;
-// Seconds per component: of the exact outline that constraints of widths need in an iteration, and
-// of a crisp design. Seconds per cell of a frame of a design. Seconds of the verification of an
-// outline: constant, per component, and per component and load.
-constexpr double kOutlineSeconds = 2.2e-3, kCrispSeconds = 6e-3, kFrameCellSeconds = 1e-6,
-                 kVerifiedSeconds = 0.3, kVerifiedComponent = 0.02, kVerifiedLoad = 2e-4;
+// Seconds per component: of the exact outline in an iteration, of a crisp design, and of the files
+// of the part. Seconds of the constraints of widths in an iteration for n components, divided by
+// n^1.5. Seconds per cell of a frame of a design. Seconds of the verification of an outline:
+// constant, per component, and per component and load.
+constexpr double kOutlineSeconds = 5e-4, kCrispSeconds = 6e-3, kExportSeconds = 0.1,
+                 kWidthsSeconds = 2.5e-4, kFrameCellSeconds = 1e-6, kVerifiedSeconds = 0.3,
+                 kVerifiedComponent = 0.02, kVerifiedLoad = 2e-4;
 
 }  // namespace
 
@@ -160,6 +162,13 @@ double design_seconds(const Scene& scene) {
   return out;
 }
 
+/// Returns the CPU time of the files of all parts: smooth outlines, drawings and solids [s].
+double export_seconds(const Scene& scene) {
+  double out = 0;
+  for (const BodyDesign& d : scene.designs) out += d.n_components() * kExportSeconds;
+  return out;
+}
+
 /// Returns the CPU time of the verification of all outlines by triangles [s].
 double outline_seconds(const Scene& scene) {
   double out = 0;
@@ -179,12 +188,13 @@ std::vector<IterationCost> iteration_costs(const Scene& scene) {
     const double cells = 1.0 * d.grid.nx * d.grid.ny, components = d.n_components();
     IterationCost& of = out.emplace_back();
     of.body = d.body;
-    of.plain = design_operations(scene, d) / kFactorRate + cells * kCellSeconds;
+    of.plain = design_operations(scene, d) / kFactorRate + cells * kCellSeconds +
+               components * kOutlineSeconds;
     if (scene.output.crisp_every > 0)
       of.plain += components * kCrispSeconds / scene.output.crisp_every;
     if (scene.output.vtk && scene.output.design_every > 0)
       of.plain += cells * kFrameCellSeconds / scene.output.design_every;
-    of.with_widths = of.plain + (d.widths.any() ? components * kOutlineSeconds : 0);
+    of.with_widths = of.plain + (d.widths.any() ? std::pow(components, 1.5) * kWidthsSeconds : 0);
   }
   return out;
 }
@@ -209,7 +219,8 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
          .may_end_early = scene.statics && scene.statics->path != fem::StaticSettings::Path::load}};
   const PhaseCost design{.name = "design", .seconds = design_seconds(scene), .may_end_early = true};
   const PhaseCost outlines{.name = "verification of outlines", .seconds = outline_seconds(scene)};
-  if (scene.domain) return {design, outlines};
+  const PhaseCost exports{.name = "files of the parts", .seconds = export_seconds(scene)};
+  if (scene.domain) return {design, exports, outlines};
 
   const bool on_cells = scene.verifies_on_cells();
   double finer = 0;  // of a motion on the mesh of the verification
@@ -225,8 +236,10 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
   std::vector<PhaseCost> out;
   for (int cycle = 1; cycle <= cycles; ++cycle) {
     out.push_back({.name = "motion", .cycle = cycle, .seconds = motion});
-    out.push_back(design);
-    out.back().cycle = cycle;
+    for (const PhaseCost& each : {design, exports}) {
+      out.push_back(each);
+      out.back().cycle = cycle;
+    }
     if (on_cells && cycles > 1)
       out.push_back({.name = "motion on cells", .cycle = cycle, .seconds = finer});
   }

@@ -138,6 +138,7 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
   observer.cycle = [&](int cycle, std::span<const mmc::BodyOutcome> outcomes) {
     design_.cycles = cycle;
     design_.outcomes.assign(outcomes.begin(), outcomes.end());
+    run_.progress.begin("files of the parts");
     for (size_t i = 0; i < outcomes.size(); ++i) {
       add_unloaded_seconds(outcomes[i]);
       if (run_.folder) {
@@ -219,6 +220,7 @@ void DesignRun::design_at_rest() {
     if (run_.folder) run_.folder->write_static_loads(*scene.domain, design_.static_loads);
   };
   write_loads(nullptr);
+  run_.progress.begin("files of the parts");
   if (run_.folder) run_.folder->write_design(problem, outcome);
   run_.progress.say(summary(outcome) + kept.words());
   if (!run_.keep_running()) throw Interrupted();

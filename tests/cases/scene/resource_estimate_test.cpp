@@ -92,7 +92,7 @@ TEST(ResourceEstimate, TimesGrowAsTheWork) {
     return seconds_of("short_beam",
                       {"optimizer.max_iterations=" + iterations, "design.cell=" + cell});
   };
-  EXPECT_NEAR(design("8000", "0.025") / design("4000", "0.025"), 2, 0.02);
+  EXPECT_NEAR(design("80000", "0.025") / design("40000", "0.025"), 2, 0.02);
   // On small cells the exact outlines, which do not depend on the cells, cost little.
   const double smaller = design("4000", "0.003125") / design("4000", "0.00625");
   EXPECT_GT(smaller, 4);
