@@ -38,7 +38,7 @@ Command keys_command(CLI::App& app) {
       "prints only this table, such as time, body.flow or top, or else the keys with this word "
       "in their names and descriptions");
   command->add_flag("--schema", options->schema, "prints a JSON schema for editors");
-  command->add_flag("--markdown", options->markdown, "prints the reference in cases/README.md");
+  command->add_flag("--markdown", options->markdown, "prints the reference in cases/docs/keys.md");
   add_value(*command, "--renew", options->renewed, "FILE", "updates the reference in this file");
   return printing(command, [options] { return keys_text(*options); });
 }

@@ -54,7 +54,7 @@ inline constexpr const char* kNumbersSentence =
 /// @param width  width of the screen [characters]
 /// @throws Error (input) with the most similar table if nothing is found.
 std::string keys_for_terminal(const std::string& word, size_t width);
-/// Returns the reference of all tables as Markdown, for cases/README.md.
+/// Returns the reference of all tables as Markdown, for cases/docs/keys.md.
 std::string keys_as_markdown();
 /// Replaces a generated section of a Markdown file between the two lines that mark it.
 /// @param text  content of the file

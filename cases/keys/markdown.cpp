@@ -1,7 +1,7 @@
 #include "cases/keys/book.h"
 #include "geometry/base.h"
 
-/// The reference of keys as a section of cases/README.md.
+/// The reference of keys as a section of cases/docs/keys.md.
 namespace flexmorph::cases {
 namespace {
 
@@ -33,8 +33,9 @@ std::string keys_as_markdown() {
 
 std::string with_section(const std::string& text, const std::string& name,
                          const std::string& section) {
-  const std::string first = "<!-- " + name +
-                            ": made by `flexmorph keys --renew cases/README.md` from here on -->\n",
+  const std::string first =
+                        "<!-- " + name +
+                        ": made by `flexmorph keys --renew cases/docs/keys.md` from here on -->\n",
                     last = "<!-- " + name + ": to here -->\n";
   const size_t begin = text.find(first), end = text.find(last);
   if (begin == std::string::npos || end == std::string::npos || end < begin)

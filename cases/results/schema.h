@@ -9,7 +9,7 @@
 #include "cases/results/run_result.h"
 
 /// Tables of the numbers of run.json: name, unit, meaning and accessor of each number. run.json,
-/// [expect] and the reference in cases/README.md are generated from these tables.
+/// [expect] and the reference in cases/docs/keys.md are generated from these tables.
 namespace flexmorph::cases {
 
 /// The value of a number: std::monostate if a run has no such number, nullptr if it is unknown.
@@ -55,10 +55,10 @@ std::string text_of(const Value& value);
 /// Returns a value as JSON: "infinite" for an infinite number, null for NaN and for no value.
 nlohmann::ordered_json json_of(const Value& value);
 
-/// Returns all tables as Markdown, for cases/README.md.
+/// Returns all tables as Markdown, for cases/docs/keys.md.
 std::string results_as_markdown();
 
-/// Replaces the references of keys and of results in the text of cases/README.md and returns the
+/// Replaces the references of keys and of results in the text of cases/docs/keys.md and returns the
 /// text.
 /// @throws Error (input) for a text without the lines that mark the references
 std::string with_references(const std::string& text);

@@ -63,9 +63,9 @@ TEST(Keys, AKeyIsDeclaredOnceForEveryCondition) {
 }
 
 TEST(Keys, TheReferenceIsFresh) {
-  const std::string text = contents_of(FLEXMORPH_CASES "/README.md");
+  const std::string text = contents_of(FLEXMORPH_CASES "/docs/keys.md");
   EXPECT_TRUE(text == cases::with_references(text))
-      << "the keys have changed: build/cases/flexmorph keys --renew cases/README.md";
+      << "the keys have changed: build/cases/flexmorph keys --renew cases/docs/keys.md";
 }
 
 TEST(ExplainedCases, ReadBackAsTheSameText) {
