@@ -29,7 +29,7 @@ std::string numbered(const std::string& stem, int number, const std::string& end
 /// Returns the name of the file with the components of the final design of a body.
 std::string components_name(const Scene& scene, const std::string& body);
 
-/// The folder of one run (cases/README.md, The run folder). All files of the run are written into
+/// The folder of one run (cases/docs/output.md). All files of the run are written into
 /// it.
 class RunFolder {
  public:

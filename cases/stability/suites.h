@@ -6,7 +6,7 @@
 #include "cases/results/quantities.h"
 #include "cases/scene/scene.h"
 
-/// Suites of changes that make a case stiff or extreme (cases/README.md, Stability).
+/// Suites of changes that make a case stiff or extreme (cases/docs/studies.md).
 namespace flexmorph::cases {
 
 /// A change of a case for one run.

@@ -1,5 +1,5 @@
 // Shows that small cases which are changed at random and run in separate processes end correctly:
-// exit codes are those of cases/README.md and never 1, nothing crashes, a run that receives SIGTERM
+// exit codes are those of cases/docs/commands.md and never 1, nothing crashes, a run that receives SIGTERM
 // ends within its limit of processor time, and its files are complete.
 //
 //   FLEXMORPH_RUNS=10000 build/tests/attack/attack_tests --gtest_filter='ShortRuns.*'   default 16

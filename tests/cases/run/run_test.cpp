@@ -1,4 +1,4 @@
-// Shows that a short run writes the documented folder (cases/README.md, The run folder), that a
+// Shows that a short run writes the documented folder (cases/docs/output.md), that a
 // second run writes equal bytes, and what remains after a failure and an interruption.
 
 #include <gtest/gtest.h>
