@@ -10,7 +10,7 @@ cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 # Markdown files are read as a whole; of other files only the comments are read.
 set(folders geometry io fem optim cases tests)
 set(endings h cpp cmake txt sh toml py)
-set(bibliography_file fem/README.md)
+set(bibliography_file fem/bibliography.md)
 # Headers of libraries that comments mention, and a file that runs write.
 set(foreign cblas.h Time_stamper.h paraview.py)
 set(months January February March April May June July August September October November December)
@@ -77,7 +77,7 @@ endfunction()
 # Returns the entries of a bibliography, one per line.
 function(entries_of text entries)
   flatten("${text}" text)
-  string(REGEX REPLACE "^.*\n## Bibliography\n" "\n" text "${text}")
+  string(REGEX REPLACE "^.*# Bibliography\n" "\n" text "${text}")
   string(REPLACE "\n- " ";" text "${text}")
   string(REGEX REPLACE "\n *" " " text "${text}")
   set(${entries} "${text}" PARENT_SCOPE)
