@@ -143,6 +143,15 @@ std::string form_text(const io::Form& form) {
   return form.or_name.empty() ? text : text + ", or names of " + form.or_name;
 }
 
+/// Returns the first table that has a key of the same name with the same explained words.
+const KeyTable& first_with_words_of(const io::Key& key) {
+  return *std::find_if(key_book().begin(), key_book().end(), [&](const KeyTable& table) {
+    return std::any_of(table.keys.begin(), table.keys.end(), [&](const io::Key* other) {
+      return other->name == key.name && other->meanings && other->meanings() == key.meanings();
+    });
+  });
+}
+
 }  // namespace
 
 std::string KeyTable::title() const {
@@ -200,12 +209,18 @@ std::string sentence_of(const io::Key& key) {
   return key.condition.empty() ? key.sentence : "(" + key.condition + ") " + key.sentence;
 }
 
-std::vector<std::array<std::string, 3>> meanings_of(const KeyTable& table) {
-  std::vector<std::array<std::string, 3>> out;
-  for (const io::Key* key : table.keys)
-    if (key->meanings)
-      for (const auto& [word, sentence] : key->meanings())
-        out.push_back({key->name, word, sentence});
+std::string WordMeanings::reference() const {
+  return explained.empty() ? "" : "the words are explained under " + explained + ".";
+}
+
+std::vector<WordMeanings> meanings_of(const KeyTable& table) {
+  std::vector<WordMeanings> out;
+  for (const io::Key* key : table.keys) {
+    if (!key->meanings) continue;
+    const KeyTable& first = first_with_words_of(*key);
+    const bool here = first.paths == table.paths;
+    out.push_back({key->name, here ? key->meanings() : io::Glossary(), here ? "" : first.title()});
+  }
   return out;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -36,9 +35,20 @@ std::string type_text(const io::Key& key);
 std::string default_text(const io::Key& key);
 /// Returns the sentence of a key, after the condition under which the key is allowed.
 std::string sentence_of(const io::Key& key);
-/// Returns the explanations of the words that the keys of a table allow: key, word and sentence.
+/// Explanations of the words that one key of a table allows.
+struct WordMeanings {
+  std::string key;        ///< Name of the key.
+  io::Glossary words;     ///< Words and sentences; empty if an earlier table explains them.
+  std::string explained;  ///< Title of the earlier table that explains the words; may be empty.
+
+  /// Returns the sentence that refers to the earlier table; empty if there is none.
+  std::string reference() const;
+};
+
+/// Returns the explanations of the words that the keys of a table allow. The words of keys that
+/// have the same name and the same words in several tables are explained in the first one only.
 /// Keys whose words need no explanation are left out.
-std::vector<std::array<std::string, 3>> meanings_of(const KeyTable& table);
+std::vector<WordMeanings> meanings_of(const KeyTable& table);
 /// Returns the name of a key as it is shown: NAME if the user chooses the name.
 std::string shown_name(const io::Key& key);
 

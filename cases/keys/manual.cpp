@@ -40,9 +40,13 @@ std::string keys_as_manual() {
              (preset == "required" ? ", required" : "; default: " + manual_text(preset)) + ".\n" +
              manual_text(sentence_of(*key)) + "\n";
     }
-    for (const auto& [key, word, sentence] : meanings_of(table))
-      out += ".TP\n.B " + manual_text(key + " = \"" + word + "\"") + "\n" + manual_text(sentence) +
-             "\n";
+    for (const WordMeanings& each : meanings_of(table)) {
+      for (const auto& [word, sentence] : each.words)
+        out += ".TP\n.B " + manual_text(each.key + " = \"" + word + "\"") + "\n" +
+               manual_text(sentence) + "\n";
+      if (each.words.empty())
+        out += ".TP\n.B " + manual_text(each.key) + "\n" + manual_text(each.reference()) + "\n";
+    }
   }
   return out + ".SH SEE ALSO\n.BR flexmorph (1)\n";
 }

@@ -25,8 +25,11 @@ std::string keys_as_markdown() {
              cell(default_text(*key)) + " | " + cell(sentence_of(*key)) + " |\n";
     const auto meanings = meanings_of(table);
     if (!meanings.empty()) out += "\n";
-    for (const auto& [key, word, sentence] : meanings)
-      out += "- `" + key + " = \"" + word + "\"`: " + sentence + "\n";
+    for (const WordMeanings& each : meanings) {
+      for (const auto& [word, sentence] : each.words)
+        out += "- `" + each.key + " = \"" + word + "\"`: " + sentence + "\n";
+      if (each.words.empty()) out += "- `" + each.key + "`: " + each.reference() + "\n";
+    }
   }
   return out;
 }

@@ -43,6 +43,15 @@ void write_lines(const Cells& cells, size_t names, size_t width, std::string& ou
   out += io::fitted_text("      " + cells[3], width, 6);
 }
 
+/// Writes an explanation below the rows of a table.
+void write_explanation(const std::string& text, size_t width, std::string& out) {
+  std::string indent = "  ";
+  for (const std::string& line : io::wrapped(text, width - 4)) {
+    out += indent + line + "\n";
+    indent = "    ";
+  }
+}
+
 /// Writes a table and the explanations of the words that its keys allow.
 /// @param explained  name of the only key whose words are explained; empty: all keys
 void write_table(const KeyTable& table, size_t width, std::string& out,
@@ -66,14 +75,11 @@ void write_table(const KeyTable& table, size_t width, std::string& out,
       write_lines(cells, widths[0], width, out);
     else
       write_row(cells, widths, out);
-  for (const auto& [key, word, sentence] : meanings_of(table)) {
-    if (!explained.empty() && key != explained) continue;
-    std::string indent = "  ";
-    for (const std::string& line :
-         io::wrapped(key + " = \"" + word + "\": " + sentence, width - 4)) {
-      out += indent + line + "\n";
-      indent = "    ";
-    }
+  for (const WordMeanings& each : meanings_of(table)) {
+    if (!explained.empty() && each.key != explained) continue;
+    for (const auto& [word, sentence] : each.words)
+      write_explanation(each.key + " = \"" + word + "\": " + sentence, width, out);
+    if (each.words.empty()) write_explanation(each.key + ": " + each.reference(), width, out);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "cases/assembly/build.h"
 #include "cases/check/ready.h"
 #include "cases/keys/book.h"
+#include "cases/keys/manual.h"
 #include "cases/results/schema.h"
 #include "io/case_files/case_parser.h"
 #include "tests/cases/program.h"
@@ -60,6 +62,22 @@ TEST(Keys, AKeyIsDeclaredOnceForEveryCondition) {
         if (key == other || key->name != other->name) continue;
         EXPECT_NE(key->condition, other->condition) << table.title() << " " << key->name;
       }
+}
+
+TEST(Keys, AWordIsExplainedOnce) {
+  for (const std::string& text : {cases::keys_as_markdown(), cases::keys_as_manual()}) {
+    const std::string one = "structural steel: EN 1993";
+    EXPECT_NE(text.find(one), std::string::npos);
+    EXPECT_EQ(text.find(one), text.rfind(one));
+  }
+  std::map<std::pair<std::string, io::Glossary>, std::string> seen;
+  for (const KeyTable& table : key_book())
+    for (const cases::WordMeanings& each : cases::meanings_of(table)) {
+      EXPECT_EQ(each.words.empty(), !each.explained.empty()) << table.title() << " " << each.key;
+      if (each.words.empty()) continue;
+      EXPECT_TRUE(seen.emplace(std::pair(each.key, each.words), table.title()).second)
+          << table.title() << " " << each.key;
+    }
 }
 
 TEST(Keys, TheReferenceIsFresh) {
@@ -136,6 +154,10 @@ TEST(KeysCommand, FindsKeysByAWord) {
   EXPECT_TRUE(testing::mentions_all(materials.out,
                                     {"material = \"steel\": density 7850 kg/m^3", "EN 1993-1-1",
                                      "material = \"aluminium\"", "EN 1999-1-1"}));
+  // Each material is explained once; the other tables with this key name the table that has it.
+  EXPECT_EQ(materials.out.find("material = \"steel\""),
+            materials.out.rfind("material = \"steel\""));
+  EXPECT_TRUE(contains(materials.out, "material: the words are explained under [[body]]."));
   // The whole reference says what a number may be.
   EXPECT_TRUE(testing::mentions_all(lines_of(flexmorph(scratch, {"keys"}).out)[0] + " " +
                                         lines_of(flexmorph(scratch, {"keys"}).out)[1],
