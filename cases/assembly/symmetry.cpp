@@ -75,8 +75,7 @@ bool keeps_loads(const GridImage& image, const std::vector<mmc::LoadCase>& loads
   });
 }
 
-constexpr const char *kLoads = "the set of loads is not symmetric",
-                     *kMotion = "the loads of a motion are not symmetric";
+constexpr const char* kDespiteLoads = "; symmetry_despite_loads = true enforces the symmetry";
 
 /// Tests for the symmetry of a design problem to the middle lines of its grid, before optimization.
 class Symmetries {
@@ -99,20 +98,32 @@ class Symmetries {
   /// Returns a text that names the first input that is not symmetric; empty if all are symmetric.
   std::string obstacle(bool in_x, bool despite_loads) const {
     const GridImage image{design_.grid, in_x};
-    if (!keeps_domain(image)) return "the domain is not symmetric";
+    if (!keeps_domain(image)) return "the domain is not symmetric " + about(in_x);
     for (const auto* polygons : {&design_.solid, &design_.empty})
       if (!image.keeps(covered(design_.grid, *polygons)))
-        return polygons == &design_.solid ? "the solid regions are not symmetric"
-                                          : "the void regions are not symmetric";
-    if (!keeps_supports(image)) return "the supports are not symmetric";
-    if (!despite_loads && !scene_.domain) return kMotion;
-    if (!despite_loads && !keeps_static_loads(image)) return kLoads;
+        return std::string(polygons == &design_.solid ? "the solid" : "the void") +
+               " regions are not symmetric " + about(in_x);
+    if (!keeps_supports(image)) return "the supports are not symmetric " + about(in_x);
+    if (!despite_loads && !scene_.domain)
+      return "the loads of a motion are not known before the motion, so that their symmetry " +
+             about(in_x) + " cannot be tested" + kDespiteLoads;
+    if (!despite_loads && !keeps_static_loads(image))
+      return "the loads are not symmetric " + about(in_x) +
+             ": the mirror image of every load case must be a load case with an equal weight "
+             "factor, and gravity must act along the line" +
+             kDespiteLoads;
     if (!mmc::is_symmetric(start_, line(in_x)))
-      return "the components of the initial design are not symmetric";
+      return "the components of the initial design are not symmetric " + about(in_x);
     return "";
   }
 
  private:
+  /// Returns the line of symmetry as text: "about the line x = 1 m".
+  std::string about(bool in_x) const {
+    const mmc::Symmetry at = line(in_x);
+    return "about the line " + (in_x ? "x = " + io::to_text(*at.x) : "y = " + io::to_text(*at.y)) +
+           " m";
+  }
   bool keeps_domain(const GridImage& image) const {
     if (!scene_.domain || scene_.domain->shape.outer.empty()) return true;
     // The sum over all rings is compared, because rings may be mirror images of each other.
@@ -156,14 +167,9 @@ mmc::Symmetry symmetry_of(const Scene& scene, const BodyDesign& design,
     if (!wanted.automatic && !(in_x ? wanted.x : wanted.y)) continue;
     const std::string obstacle = symmetries.obstacle(in_x, wanted.despite_loads);
     const mmc::Symmetry line = symmetries.line(in_x);
-    if (!obstacle.empty() && !wanted.automatic) {
-      const bool loads = obstacle == kLoads || obstacle == kMotion;
+    if (!obstacle.empty() && !wanted.automatic)
       scene.refuse("design." + std::to_string(&design - scene.designs.data()) + ".symmetry",
-                   obstacle + " about the line " +
-                       (in_x ? "x = " + io::to_text(*line.x) : "y = " + io::to_text(*line.y)) +
-                       " m" +
-                       (loads ? "; symmetry_despite_loads = true enforces the symmetry" : ""));
-    }
+                   obstacle);
     if (obstacle.empty()) (in_x ? out.x : out.y) = in_x ? line.x : line.y;
   }
   return out;
