@@ -51,6 +51,22 @@ class Gradients(unittest.TestCase):
         self.assertEqual(found.nit, 3)
         self.assertEqual(found.fun, motion.objective(found.x))
 
+    def test_limits_of_the_motion(self):
+        for response in ("joint_force", "deflection"):
+            case = flexmorph.load(support.SHORT_PLATE, set={
+                "time.end": 0.06, "esl.every": 0.02, "design.cell": 0.01,
+                "design.min_thickness": 0.01, "cycle.correct": "direct", "design.max_volume": None,
+                "design.constraint": [{"response": "volume", "at_most": 0.5},
+                                      {"response": response, "at_most": 1.0}]})
+            problem = case.problem(of="motion", stage="coarse", step=2e-3)
+            at = problem.constraint_names.index(response)
+            x, d = direction_of(problem, 1)
+            orders = support.taylor_orders(lambda y: problem.constraints(y)[at],
+                                           lambda y: problem.jacobian(y)[at], x, d,
+                                           [1e-3 / 2 ** k for k in range(4)])
+            for order in orders:
+                self.assertAlmostEqual(order, 2.0, delta=0.05, msg=f"{response}: {orders}")
+
     def test_hessian_of_the_short_beam(self):
         problem = flexmorph.load("short_beam", set=COARSE).problem(stage="coarse")
         self.assertTrue(problem.has_hessian)
@@ -123,9 +139,80 @@ class Interfaces(unittest.TestCase):
         except ImportError:
             self.skipTest("SciPy is absent")
         p = self.problem
-        found = minimize(**p.scipy(), method="SLSQP", options={"maxiter": 40})
-        self.assertLess(p.constraints(found.x).max(), 1e-2)
-        self.assertLess(found.fun, p.objective(p.x0) - 0.3)
+        for method, options in (("SLSQP", {"maxiter": 10}),
+                                ("trust-constr", {"maxiter": 20, "initial_tr_radius": 0.5,
+                                                  "initial_barrier_parameter": 1e-3,
+                                                  "initial_barrier_tolerance": 1e-3})):
+            x = p.x0
+            for _ in range(6):
+                x = minimize(**p.scipy(x, box=0.15), method=method, options=options).x
+            self.assertLess(p.constraints(x).max(), 1e-2, method)
+            self.assertLess(p.objective(x), p.objective(p.x0) - 0.3, method)
+
+    def test_boxes_lie_inside_the_bounds(self):
+        p = self.problem
+        lower, upper = p.box(p.x0, 0.15)
+        self.assertTrue(np.all(p.lower <= lower) and np.all(upper <= p.upper))
+        self.assertLessEqual((upper - lower).max(), 0.3 + 1e-12)
+        np.testing.assert_array_equal(p.box(p.x0, 1e3)[0], p.lower)
+
+    def test_scipy_gets_infinite_values_where_nothing_can_be_evaluated(self):
+        try:
+            arguments = self.problem.scipy()
+        except ImportError:
+            self.skipTest("SciPy is absent")
+        x = self.problem.x0
+        x[self.problem.names.index("beam.1.half_length")] = -1.0  # outside the bounds
+        with self.assertRaises(flexmorph.NumericalError):
+            self.problem.objective(x)
+        self.assertEqual(arguments["fun"](x), np.inf)
+        self.assertTrue(np.all(np.isinf(arguments["constraints"].fun(x))))
+
+    def test_the_object_has_what_cyipopt_calls(self):
+        # cyipopt is not in Debian 12; the calls are those of its documentation.
+        for stage in ("coarse", "last"):
+            p = flexmorph.load("short_beam", set=COARSE).problem(stage=stage)
+            arguments = p.cyipopt()
+            called = arguments.pop("problem_obj")
+            self.assertEqual(sorted(arguments), ["cl", "cu", "lb", "m", "n", "ub"])
+            x = np.clip(p.x0, arguments["lb"], arguments["ub"])
+            self.assertEqual(np.ndim(called.objective(x)), 0)
+            self.assertEqual(called.gradient(x).shape, (p.n,))
+            self.assertEqual(called.constraints(x).shape, (p.m,))
+            # Without jacobianstructure the matrix is full, row by row.
+            self.assertFalse(hasattr(called, "jacobianstructure"))
+            self.assertEqual(np.ravel(called.jacobian(x)).size, p.n * p.m)
+            self.assertEqual(hasattr(called, "hessian"), stage == "coarse")
+            if stage == "last":
+                continue
+            rows, columns = called.hessianstructure()
+            self.assertTrue(np.all(rows >= columns))
+            lagrange = np.full(p.m, 2.0)
+            lower = np.zeros((p.n, p.n))
+            lower[rows, columns] = called.hessian(x, lagrange, 0.5)
+            whole = lower + np.tril(lower, -1).T
+            np.testing.assert_allclose(whole, p.hessian_matrix(x, lagrange, 0.5), rtol=0, atol=1e-10)
+
+    def test_another_thread_needs_a_problem_of_its_own(self):
+        import threading
+        p, errors = self.problem, []
+
+        def compute():
+            try:
+                p.objective(p.x0 + 1e-3)
+            except flexmorph.Error as error:
+                errors.append(error)
+
+        def callback(_):
+            thread = threading.Thread(target=compute)
+            thread.start()
+            thread.join()
+            return True
+
+        p.solve("mma", stages=False, callback=callback)
+        self.assertEqual([type(e) for e in errors], [flexmorph.InputError])
+        compute()  # when nothing is computed, any thread may begin
+        self.assertEqual(len(errors), 1)
 
     def test_nlopt_decreases_the_objective(self):
         try:
@@ -136,8 +223,9 @@ class Interfaces(unittest.TestCase):
         x = p.x0
         for _ in range(4):  # boxes that move, because NLopt's first steps are long
             opt = nlopt.opt(nlopt.LD_CCSAQ, p.n)
-            opt.set_lower_bounds(np.maximum(p.lower, x - 0.075))
-            opt.set_upper_bounds(np.minimum(p.upper, x + 0.075))
+            lower, upper = p.box(x, 0.075)
+            opt.set_lower_bounds(lower)
+            opt.set_upper_bounds(upper)
             opt.set_min_objective(p.nlopt)
             opt.add_inequality_mconstraint(p.nlopt_constraints, np.full(p.m, 1e-4))
             opt.set_maxeval(10)

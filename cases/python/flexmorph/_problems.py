@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import _core
-from ._errors import InputError
+from ._errors import InputError, NumericalError
 from ._results import Design
 
 
@@ -88,9 +88,11 @@ class Problem:
         stage : {"coarse", "eroded", "last"}
             Formulation, see `Case.problem`.
         x : array_like, optional
-            Design (n) at which the new problem starts; by default the start of this problem.
+            Design (n) at which the new problem starts, moved into the bounds; by default the start of
+            this problem.
         """
-        return Problem(self._case, self._core.at(stage, np.asarray(self.x0 if x is None else x, float)))
+        x = np.clip(self.x0 if x is None else np.asarray(x, float), self.lower, self.upper)
+        return Problem(self._case, self._core.at(stage, x))
 
     def evaluate(self, x):
         """Return all values and gradients at x as an `Evaluation`."""
@@ -146,11 +148,40 @@ class Problem:
         return {"n": self.n, "m": self.m, "problem_obj": self, "lb": self.lower, "ub": self.upper,
                 "cl": np.full(self.m, -np.inf), "cu": np.zeros(self.m)}
 
-    def scipy(self, *, hessian=False):
-        """Return the keyword arguments of ``scipy.optimize.minimize`` (trust-constr, SLSQP).
+    def box(self, x, size):
+        """Return lower and upper bounds of a box around x, inside the bounds of the problem.
+
+        Optimizers without a move limit take first steps that change every bar by several cells; the
+        linearized functions say nothing about such designs. Inside a box of three move limits, 0.15,
+        steps stay where they hold; the next box begins at the design that was found.
 
         Parameters
         ----------
+        x : array_like
+            Centre of the box (n).
+        size : float
+            Largest change of a variable.
+
+        Returns
+        -------
+        tuple of numpy.ndarray
+            Lower and upper bounds (n).
+        """
+        x = np.asarray(x, float)
+        return np.maximum(self.lower, x - size), np.minimum(self.upper, x + size)
+
+    def scipy(self, x=None, *, box=None, hessian=False):
+        """Return the keyword arguments of ``scipy.optimize.minimize`` (trust-constr, SLSQP).
+
+        A design that cannot be evaluated has infinite values, so that the method takes a shorter
+        step.
+
+        Parameters
+        ----------
+        x : array_like, optional
+            Start (n); by default that of the problem.
+        box : float, optional
+            Largest change of a variable, see `box`; by default the bounds of the problem.
         hessian : bool, optional
             True to add second derivatives, which trust-constr uses.
 
@@ -161,15 +192,25 @@ class Problem:
         from scipy.optimize import BFGS, Bounds, NonlinearConstraint
         if hessian:
             self._require_hessian()
-        out = {"fun": self.objective, "jac": self.gradient, "x0": self.x0,
-               "bounds": Bounds(self.lower, self.upper)}
+
+        def or_infinite(function, infinite):
+            def value(x):
+                try:
+                    return function(x)
+                except NumericalError:
+                    return infinite
+            return value
+        x = np.clip(self.x0 if x is None else np.asarray(x, float), self.lower, self.upper)
+        bounds = (self.lower, self.upper) if box is None else self.box(x, box)
+        out = {"fun": or_infinite(self.objective, np.inf), "jac": self.gradient, "x0": x,
+               "bounds": Bounds(*bounds)}
         if self.m:
             second = BFGS()
             if hessian:
                 def second(x, v):
                     return self.hessian_matrix(x, v, 0.0)
-            out["constraints"] = NonlinearConstraint(self.constraints, -np.inf, 0, jac=self.jacobian,
-                                                     hess=second)
+            values = or_infinite(self.constraints, np.full(self.m, np.inf))
+            out["constraints"] = NonlinearConstraint(values, -np.inf, 0, jac=self.jacobian, hess=second)
         if hessian:
             out["hess"] = lambda x: self.hessian_matrix(x, np.zeros(self.m), 1.0)
         return out
