@@ -109,14 +109,16 @@ std::vector<mmc::MotionResponse::Value> SceneMotion::evaluate(
     offset(design.stiffness_void, of_motion[d].stiffness);
     offset(design.mass_void, of_motion[d].mass);
   }
-  if (keep_running_ && !keep_running_()) throw StoppedMotion();
+  stop_if_cancelled();
   const Mechanism mechanism = mechanism_with(of_motion);
   std::vector<fem::MotionObjective> objectives;
   for (const mmc::MotionRow& row : rows) objectives.push_back(objective_of(row, mechanism));
   ++motions_;
-  last_ =
-      fem::motion_gradients(mechanism.model, mechanism.moving_roots, mechanism.motion, objectives,
-                            {.checkpoints = settings_.checkpoints, .parameters = {}});
+  last_ = fem::motion_gradients(
+      mechanism.model, mechanism.moving_roots, mechanism.motion, objectives,
+      {.checkpoints = settings_.checkpoints, .parameters = {}, .every_step = [this] {
+         stop_if_cancelled();
+       }});
   std::vector<Value> out;
   for (const fem::MotionGradient& of : last_.of) {
     Value& value = out.emplace_back();
@@ -146,7 +148,12 @@ std::vector<double> SceneMotion::crisp(std::span<const mmc::MotionRow> rows,
   std::vector<fem::MotionObjective> objectives;
   for (const mmc::MotionRow& row : rows) objectives.push_back(objective_of(row, mechanism));
   ++motions_;
-  return fem::motion_values(mechanism.model, mechanism.moving_roots, mechanism.motion, objectives);
+  return fem::motion_values(mechanism.model, mechanism.moving_roots, mechanism.motion, objectives,
+                            [this] { stop_if_cancelled(); });
+}
+
+void SceneMotion::stop_if_cancelled() const {
+  if (keep_running_ && !keep_running_()) throw StoppedMotion();
 }
 
 }  // namespace flexmorph::cases

@@ -18,8 +18,9 @@ class SceneMotion final : public mmc::MotionResponse {
   };
   /// Creates the motion of a prepared case.
   /// @param prepared  must live longer
-  /// @param keep_running  cancellation callback; evaluate() calls it before the motion and throws
-  ///               StoppedMotion when it returns false
+  /// @param keep_running  cancellation callback; evaluate() and crisp() call it at every step of
+  /// the
+  ///                      motion and of its adjoint, and throw StoppedMotion when it returns false
   SceneMotion(const PreparedCase& prepared, const Settings& settings,
               std::function<bool()> keep_running);
 
@@ -36,6 +37,7 @@ class SceneMotion final : public mmc::MotionResponse {
   fem::MotionObjective objective_of(const mmc::MotionRow& row, const Mechanism& mechanism) const;
   Mechanism mechanism_with(std::span<const mmc::CellScaleFactors> factors) const;
   int coarse(size_t design) const;
+  void stop_if_cancelled() const;
 
   const PreparedCase& prepared_;
   const Scene& scene_;

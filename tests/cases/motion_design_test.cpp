@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "cases/assembly/scene_motion.h"
 #include "io/case_files/case_file.h"
@@ -143,6 +144,33 @@ TEST(MotionSum, IsWeighted) {
   EXPECT_NEAR(sum.f, f, 1e-12 * f);
   const VectorXd df = energy.df + 3 * deflection.df + 1e-3 * force.df;
   EXPECT_LT((sum.df - df).norm(), 1e-9 * df.norm());  // The adjoint systems are solved to 2e-13.
+}
+
+// The callback is asked at every step of the motion and of its adjoint.
+TEST(SceneMotions, StopWithinAStepWhenTheyAreCancelled) {
+  const cases::PreparedCase prepared(
+      short_scene({"design.minimize=strain_energy", "cycle.correct=direct"}));
+  const std::vector<mmc::BodyProblem>& problems = prepared.design_problems();
+  const mmc::Goal* goal = &problems.front().motion_goal;
+  const std::vector<mmc::MotionRow> rows = mmc::motion_objectives({&goal, 1});
+  const VectorXd fractions = VectorXd::Constant(problems.front().grid.n_cells(), 0.5);
+  const std::vector<mmc::CellScaleFactors> factors = {mmc::Ersatz::dynamic(fractions, 1e-3, 1e-3)};
+  int asked = 0, last = std::numeric_limits<int>::max();
+  SceneMotion motion(prepared, {.cell = 0, .step = 2e-3, .checkpoints = 0},
+                     [&] { return ++asked < last; });
+  motion.evaluate(rows, factors);
+  const int all = asked, steps = 30;
+  EXPECT_GE(all, 2 * steps);
+  for (const int end : {1, steps / 2, all - 2}) {
+    asked = 0;
+    last = end;
+    EXPECT_THROW(motion.evaluate(rows, factors), cases::StoppedMotion);
+    EXPECT_EQ(asked, end);
+  }
+  asked = 0;
+  last = steps / 2;
+  EXPECT_THROW(motion.crisp(rows, std::vector{fractions}), cases::StoppedMotion);
+  EXPECT_EQ(asked, last);
 }
 
 // A constraint of one body depends on the designs of all bodies; here a spring couples the ends of

@@ -33,7 +33,7 @@ class Gradient {
   std::vector<double> values() {
     Workspace model(model_);
     settings_.keep = Keep::nothing;
-    integrate(model, moving_roots_, settings_, [&](const MotionStep& step) { watched_.see(step); });
+    integrate(model, moving_roots_, settings_, [&](const MotionStep& step) { see(step); });
     std::vector<double> out;
     for (size_t k = 0; k < objectives_.size(); ++k)
       out.push_back(watched_.mean(k, settings_.stops).value);
@@ -77,6 +77,11 @@ class Gradient {
             "more");
   }
 
+  void see(const MotionStep& step) {
+    watched_.see(step);
+    if (gradient_.every_step) gradient_.every_step();
+  }
+
   /// Start of a part of the motion, as an archive.
   struct SavedCheckpoint {
     std::string memory;
@@ -96,8 +101,7 @@ class Gradient {
         if (t < next - 1e-9 * settings.end || t > settings.end - 0.5 * settings.step) return;
         memories_.push_back({save_checkpoint(), t, watched_.times().size() - 1});
       };
-    result = integrate(model, moving_roots_, settings,
-                       [&](const MotionStep& step) { watched_.see(step); });
+    result = integrate(model, moving_roots_, settings, [&](const MotionStep& step) { see(step); });
   }
 
   /// Sets the data of the sweep at the end of the motion.
@@ -123,7 +127,9 @@ class Gradient {
       if (k > 0) settings.memory = memories_[k - 1].memory;
       if (k < memories_.size()) settings.until = memories_[k].time;
       Workspace model(model_);
-      const MotionResult part = integrate(model, moving_roots_, settings, [](const MotionStep&) {});
+      const MotionResult part = integrate(model, moving_roots_, settings, [&](const MotionStep&) {
+        if (gradient_.every_step) gradient_.every_step();
+      });
       sweep.back(model, part.trajectory, last, k == 0);
       if (k > 0) {
         last = memories_[k - 1].seen;
@@ -185,8 +191,11 @@ MotionGradients motion_gradients(const Model& model, std::span<const MovingRoot>
 
 std::vector<double> motion_values(const Model& model, std::span<const MovingRoot> moving_roots,
                                   const MotionSettings& settings,
-                                  std::span<const MotionObjective> objectives) {
-  return Gradient(model, moving_roots, settings, objectives, {}).values();
+                                  std::span<const MotionObjective> objectives,
+                                  const std::function<void()>& every_step) {
+  GradientSettings gradient;
+  gradient.every_step = every_step;
+  return Gradient(model, moving_roots, settings, objectives, gradient).values();
 }
 
 }  // namespace flexmorph::fem

@@ -39,6 +39,9 @@ struct GradientSettings {
   int checkpoints = 0;
   /// Derivatives of the forces with respect to additional parameters.
   std::vector<ForceSlope> parameters;
+  /// Callback at every step of the motion and of the adjoint; it may throw, for example to cancel
+  /// the computation. Empty: it is not called.
+  std::function<void()> every_step = {};
 };
 
 /// Value of an objective J and its derivatives.
@@ -95,10 +98,12 @@ MotionGradients motion_gradients(const Model& model, std::span<const MovingRoot>
                                  const GradientSettings& gradient = {});
 
 /// Integrates the motion of a model and returns the values J of its objectives, without gradients.
-/// @throws Error as motion_gradients().
+/// @param every_step  callback at every step, as GradientSettings::every_step
+/// @throws Error as motion_gradients(); what the callback throws
 std::vector<double> motion_values(const Model& model, std::span<const MovingRoot> moving_roots,
                                   const MotionSettings& settings,
-                                  std::span<const MotionObjective> objectives);
+                                  std::span<const MotionObjective> objectives,
+                                  const std::function<void()>& every_step = {});
 
 /// Returns the reason why a motion has no gradient, as text; empty if it has a gradient.
 std::string no_gradient_because(const Model& model, const MotionSettings& settings);

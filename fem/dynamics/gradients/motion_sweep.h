@@ -51,6 +51,7 @@ class AdjointSweep {
         back_through(part.changes[change], part.points[i - 1].x, part.points[i].x, system);
         continue;
       }
+      if (settings_.every_step) settings_.every_step();
       add_measures(part.points[i].x, seen--);
       const State &x = part.points[i].x, &before = part.points[i - 1].x;
       back_through_step(x, x.t - before.t, system);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/cpu_time.h"
+#include "optim/cancellable_problem.h"
 #include "optim/mmc/length_scale/unloaded_components.h"
 
 namespace flexmorph::mmc {
@@ -46,7 +47,8 @@ StageResult StageRunner::optimize(const StageResult& from, std::vector<Formulati
   CombinedProblem whole(parts_, from.designs, formulations);
   std::optional<optim::RecordedProblem> recorded;
   if (settings_.past) recorded.emplace(whole.problem(), settings_.past->log);
-  optim::Problem& problem = recorded ? *recorded : whole.problem();
+  optim::CancellableProblem problem(recorded ? *recorded : whole.problem(),
+                                    [this] { return is_running_ = keeps_running(); });
   StageResult out = from;
   out.formulations = std::move(formulations);
   out.result = optim::make_optimizer(settings)->minimize(
