@@ -1,6 +1,7 @@
 #include "io/background.h"
 
 #include <system_error>
+#include <utility>
 
 namespace flexmorph::io {
 
@@ -23,7 +24,7 @@ Background::~Background() {
 }
 
 void Background::rethrow() {
-  if (failure_) std::rethrow_exception(failure_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void Background::then(std::function<void()> task) {
@@ -48,17 +49,16 @@ void Background::work() {
     if (tasks_.empty()) return;
     // references into a deque stay valid when tasks are added
     const std::function<void()>& task = tasks_.front();
-    if (!failure_) {
-      lock.unlock();
-      std::exception_ptr failure;
-      try {
-        task();
-      } catch (...) {
-        failure = std::current_exception();
-      }
-      lock.lock();
-      failure_ = failure;
+    lock.unlock();
+    std::exception_ptr failure;
+    try {
+      task();
+    } catch (...) {
+      failure = std::current_exception();
     }
+    lock.lock();
+    failure_ = failure;
+    if (failure) tasks_.resize(1);  // the tasks after the one that failed are dropped
     tasks_.pop_front();
     changed_.notify_all();
   }

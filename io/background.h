@@ -23,11 +23,14 @@ class Background {
   Background& operator=(const Background&) = delete;
 
   /// Adds a task. The task must own the data that it uses. The call waits while kMaxWaitingJobs
-  /// tasks are in the queue. After a task has thrown, the thread executes no further tasks.
-  /// @throws the exception of the first task that threw
+  /// tasks are in the queue.
+  /// @throws the exception of a task that threw since the last call; the tasks after it, and the
+  /// new
+  ///         task, are dropped. An exception is thrown once; later tasks are executed again, so
+  ///         that the files of a failed run can be written.
   void then(std::function<void()> task);
   /// Waits until all tasks are done.
-  /// @throws the exception of the first task that threw
+  /// @throws the exception of a task that threw since the last call, see then()
   void wait();
 
   static constexpr size_t kMaxWaitingJobs = 16;  ///< Largest number of tasks in the queue.

@@ -217,6 +217,9 @@ void write_png(const std::string& path, const Grid& grid, std::span<const double
   if (cell_values.size() != static_cast<size_t>(grid.n_cells()))
     throw Error::numerical(path + ": " + std::to_string(cell_values.size()) +
                            " values are given for " + std::to_string(grid.n_cells()) + " cells");
+  if (!(picture.upper > picture.lower))
+    throw Error::numerical(path + ": the value of black, " + to_text(picture.upper) +
+                           ", must be above the value of white, " + to_text(picture.lower));
   const int n = picture.pixels_per_cell;
   Pixels pixels{grid.nx * n, grid.ny * n, 1};
   for (int y = grid.ny * n - 1; y >= 0; --y)

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace flexmorph::io {
@@ -39,9 +40,25 @@ TEST_P(EveryBackground, TellsWhatATaskThrew) {
     EXPECT_STREQ(error.what(), "a full disk");
   }
   EXPECT_TRUE(told);
-  if (!GetParam()) return;
-  EXPECT_THROW(background.then([&done] { ++done; }), std::runtime_error);
+  // The exception is thrown once: later tasks are executed.
+  background.then([&done] { ++done; });
+  background.wait();
+  EXPECT_EQ(done, 1);
+}
+
+TEST(Background, DropsTasksAfterAFailure) {
+  std::atomic<int> done = 0;
+  std::atomic<bool> may_fail = false;
+  Background background(true);
+  background.then([&may_fail] {
+    while (!may_fail) std::this_thread::yield();
+    throw std::runtime_error("a full disk");
+  });
+  for (int k = 0; k < 3; ++k) background.then([&done] { ++done; });
+  may_fail = true;
+  EXPECT_THROW(background.wait(), std::runtime_error);
   EXPECT_EQ(done, 0);
+  background.wait();
 }
 
 }  // namespace

@@ -306,6 +306,7 @@ TEST(VtkFiles, RefuseWrongSizesAndNumbersThatAreNone) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "a.vti"));
   EXPECT_THROW(write_png(scratch / "a.png", grid, four), Error);
   EXPECT_THROW(write_png(scratch / "a.png", grid, three), Error);
+  EXPECT_THROW(write_png(scratch / "a.png", grid, three, {.lower = 1, .upper = 1}), Error);
 }
 
 }  // namespace
