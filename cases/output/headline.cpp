@@ -44,6 +44,37 @@ std::string verdict_of(const DesignResult& design) {
   return out;
 }
 
+/// Returns the outcome whose optimization is the farthest from its end.
+const mmc::BodyOutcome& least_finished(const DesignResult& design) {
+  return *std::min_element(design.outcomes.begin(), design.outcomes.end(),
+                           [](const mmc::BodyOutcome& a, const mmc::BodyOutcome& b) {
+                             return a.verdict.kind < b.verdict.kind;
+                           });
+}
+
+/// Returns sentences that explain the verdict on a design: its state, the reason why the optimizer
+/// stopped, and the number of cycles.
+std::string verdict_note(const Scene& scene, const RunResult& result) {
+  using Kind = optim::Verdict::Kind;
+  const mmc::BodyOutcome& o = least_finished(result.design);
+  const std::string subject =
+      result.design.outcomes.size() > 1 ? "The design of '" + o.body + "' " : "The design ";
+  if (o.verdict.kind == Kind::evaluated) return subject + "was evaluated; nothing was optimized.";
+  std::string out;
+  if (o.verdict.kind == Kind::unfinished)
+    out = o.stop.starts_with("interrupted")
+              ? subject + "is not finished: " + o.stop + "."
+              : subject + "was still improving when the optimizer stopped: " + o.stop + ".";
+  else
+    out = subject + "is finished: " + optim::text_of(o.verdict) + ".";
+  if (scene.cycle.max_cycles == 1) return out;
+  const std::string cycles = io::to_text(result.design.cycles);
+  return out + (result.info.status.starts_with("done")
+                    ? " It is the best of " + cycles + (cycles == "1" ? " cycle." : " cycles.")
+                    : " This is cycle " + cycles + " of at most " +
+                          io::to_text(scene.cycle.max_cycles) + ".");
+}
+
 PageFact gain_fact(const Gain& gain) {
   const double percent = 100 * std::abs(gain.change());
   return {"Gain", io::to_text(percent, 3) + (gain.change() < 0 ? " % less" : " % more"),
@@ -116,7 +147,7 @@ std::vector<PageFact> headline(const Scene& scene, const RunResult& result,
   std::vector<PageFact> out;
   const DesignResult& design = result.design;
   if (!design.outcomes.empty()) {
-    out.push_back({"Verdict", verdict_of(design), design.outcomes.front().stop,
+    out.push_back({"Verdict", verdict_of(design), verdict_note(scene, result),
                    meaning_of(design_quantities(), "verdict")});
     if (const double mass = mass_of(design); mass > 0)
       out.push_back({"Mass", with_unit(mass, "kg"), "of all designs", ""});

@@ -3,6 +3,8 @@
 #include <spawn.h>
 #include <unistd.h>
 
+#include <cstdlib>
+
 #include "cases/output/report.h"
 
 namespace flexmorph::cases {
@@ -28,11 +30,17 @@ void LivePage::update(const std::string& words) {
 }
 
 std::string open_on_desktop(const std::string& path) {
+  const auto has = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value != '\0';
+  };
+  if (!has("DISPLAY") && !has("WAYLAND_DISPLAY"))
+    return "There is no display. Open " + path + " in a browser.";
   const char* const words[] = {"xdg-open", path.c_str(), nullptr};
   pid_t process = 0;
   const int error =
       posix_spawnp(&process, words[0], nullptr, nullptr, const_cast<char* const*>(words), environ);
-  return error == 0 ? "" : "xdg-open is absent: open " + path + " in a browser";
+  return error == 0 ? "" : "xdg-open is not installed. Open " + path + " in a browser.";
 }
 
 }  // namespace flexmorph::cases

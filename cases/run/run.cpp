@@ -198,7 +198,7 @@ int run_in_folder(const ReadyCase& ready, const std::string& directory, const Ru
   progress.watch([&](const std::string& words) { page.update(words); });
   if (options.open)
     if (const std::string why = open_on_desktop(directory + "/report.html"); !why.empty())
-      progress.object("warning", why);
+      progress.say(why, true);
   EndedRun ended = run_prepared({.prepared = prepared,
                                  .folder = &folder,
                                  .progress = progress,

@@ -148,7 +148,11 @@ std::string stop_text(const StageRunner& run, const optim::Result& result) {
   if (result.stop == optim::Stop::iteration_limit)
     return "iteration limit: " + std::to_string(run.iterations()) + " iterations; KKT residual " +
            optim::scientific(result.kkt);
-  return optim::to_string(result.stop) + (result.message.empty() ? "" : ": " + result.message);
+  // A search whose objective hardly changes ends, although the design may not be converged.
+  const bool at_rest = result.stop == optim::Stop::converged &&
+                       result.verdict.kind != optim::Verdict::Kind::converged;
+  return (at_rest ? "small change" : optim::to_string(result.stop)) +
+         (result.message.empty() ? "" : ": " + result.message);
 }
 
 }  // namespace
