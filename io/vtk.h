@@ -91,7 +91,8 @@ struct Picture {
 };
 
 /// Writes a picture (.png) with one grey value per cell; y points upwards, and there are no axes.
-/// @throws Error (numerical) for a wrong number of values or a value that is not finite.
+/// @throws Error (numerical) for a wrong number of values, a value that is not finite, or a picture
+///         whose upper value is not above the lower one.
 void write_png(const std::string& path, const Grid& grid, std::span<const double> cell_values,
                const Picture& picture = {});
 

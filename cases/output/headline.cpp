@@ -61,13 +61,13 @@ std::string verdict_note(const Scene& scene, const RunResult& result) {
       result.design.outcomes.size() > 1 ? "The design of '" + o.body + "' " : "The design ";
   if (o.verdict.kind == Kind::evaluated) return subject + "was evaluated; nothing was optimized.";
   std::string out;
-  if (o.verdict.kind == Kind::unfinished)
-    out = o.stop.starts_with("interrupted")
-              ? subject + "is not finished: " + o.stop + "."
-              : subject + "was still improving when the optimizer stopped: " + o.stop + ".";
-  else
+  if (o.verdict.kind != Kind::unfinished)
     out = subject + "is finished: " + optim::text_of(o.verdict) + ".";
-  if (scene.cycle.max_cycles == 1) return out;
+  else if (o.stop.starts_with("interrupted"))
+    out = subject + "is not finished: " + o.stop + ".";
+  else
+    out = subject + "is not finished. The optimizer stopped for this reason: " + o.stop + ".";
+  if (scene.domain || scene.cycle.max_cycles == 1) return out;
   const std::string cycles = io::to_text(result.design.cycles);
   return out + (result.info.status.starts_with("done")
                     ? " It is the best of " + cycles + (cycles == "1" ? " cycle." : " cycles.")
