@@ -26,6 +26,11 @@ size_t index_of(const fem::Model& model, const std::string& joint) {
                              all.begin());
 }
 
+/// Returns the body whose force is a column: body b, or body a if b is the ground.
+const std::string& loaded_body(const Anchor& a, const Anchor& b) {
+  return b.on_ground() ? a.body : b.body;
+}
+
 /// Returns the power λ · ∂Φ/∂t of a drive [W].
 double drive_power(const fem::Model& model, size_t joint, const fem::State& x) {
   fem::ConstraintRows rows;
@@ -65,6 +70,17 @@ void MechanismColumns::describe(const std::string& of,
     columns_.push_back({of + "." + quantity, unit, meaning, ColumnGroup::mechanism});
 }
 
+void MechanismColumns::describe_wrench(const std::string& of, const std::string& kind,
+                                       const std::string& body) {
+  const std::string force = " component of the force of the " + kind + " on '" + body + "'",
+                    x = "x" + force, y = "y" + force,
+                    moment = "moment of the " + kind + " on '" + body +
+                             "' about the point of the " + kind;
+  describe(of, {{"force_x", "N", x.c_str()},
+                {"force_y", "N", y.c_str()},
+                {"moment", "N m", moment.c_str()}});
+}
+
 void MechanismColumns::describe_bodies() {
   for (const RigidBody& body : scene_.rigid_bodies) {
     describe(body.name, {{"x", "m", "x coordinate of the origin of the body's frame"},
@@ -88,10 +104,7 @@ void MechanismColumns::describe_joints() {
                                     [](const Law& law) { return !law.drive.empty(); });
     const Anchor about = joint.row->on_one_body ? joint.a : completed(scene_, joint.b, joint.a);
     joints_.push_back({&joint, about, driven});
-    describe(joint.name,
-             {{"force_x", "N", "x component of the force of the joint on body b"},
-              {"force_y", "N", "y component of the force of the joint on body b"},
-              {"moment", "N m", "moment of the joint on body b about the point of the joint"}});
+    describe_wrench(joint.name, "joint", loaded_body(joint.a, joint.b));
     if (driven && !scene_.statics)
       describe(joint.name, {{"power", "W", "power of the drive that enters the mechanism"}});
   }
@@ -120,11 +133,8 @@ void MechanismColumns::describe_hubs() {
 void MechanismColumns::describe_springs() {
   for (const Spring& spring : scene_.springs) {
     if (!spring.named) continue;
-    describe(spring.name,
-             {{"force_x", "N", "x component of the force of the spring on body b"},
-              {"force_y", "N", "y component of the force of the spring on body b"},
-              {"moment", "N m", "moment of the spring on body b about the point of the spring"},
-              {"energy", "J", "energy stored in the spring"}});
+    describe_wrench(spring.name, "spring", loaded_body(spring.a, spring.b));
+    describe(spring.name, {{"energy", "J", "energy stored in the spring"}});
     if (!scene_.statics)
       describe(spring.name,
                {{"power", "W",
@@ -148,7 +158,7 @@ void append_spring(const Scene& scene, const Spring& spring, fem::Workspace& mod
   force = -force;  // force elements are on the left-hand side of the equations of motion
   const Anchor at = completed(scene, spring.b, spring.a);
   const Vec2 about = model.location_motion({at.body, at.point, 0, {}}, x).position;
-  const std::string& body = spring.b.on_ground() ? spring.a.body : spring.b.body;
+  const std::string& body = loaded_body(spring.a, spring.b);
   append_wrench(fem::wrench_on(model.body(body), force, {about.x(), about.y(), 0}, x), row);
   row.push_back((*found)->energies(x).strain);
   if (!scene.statics) row.push_back((*found)->power(x));
@@ -175,7 +185,7 @@ void MechanismColumns::append(fem::Workspace& model, const fem::State& x,
     const size_t index = index_of(model, joint.name);
     const Vec2 about =
         model.location_motion({watched.about.body, watched.about.point, 0, {}}, x).position;
-    const std::string& body = joint.b.on_ground() ? joint.a.body : joint.b.body;
+    const std::string& body = loaded_body(joint.a, joint.b);
     append_wrench(model.joint_wrench(index, body, {about.x(), about.y(), 0}, x), row);
     if (watched.driven && !scene_.statics) row.push_back(drive_power(model, index, x));
   }

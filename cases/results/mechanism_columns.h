@@ -53,6 +53,8 @@ class MechanismColumns {
   /// Adds descriptions of columns "<of>.<quantity>".
   void describe(const std::string& of,
                 std::initializer_list<std::array<const char*, 3>> quantities);
+  /// Adds descriptions of the force and the moment of a joint or a spring on a body.
+  void describe_wrench(const std::string& of, const std::string& kind, const std::string& body);
   void append_trajectory(double t, std::vector<double>& row);
   void append_hub(const WatchedHub& hub, fem::Workspace& model, const fem::State& x,
                   std::vector<double>& row) const;

@@ -162,6 +162,24 @@ TEST(Columns, OfAllShippedCasesAreDescribed) {
   EXPECT_GT(paths, 2);
 }
 
+// Where b is the ground, the columns of a joint are the force on body a.
+TEST(Columns, OfForcesNameTheBody) {
+  const auto meaning = [](const std::string& joint) {
+    const Scene scene = read_scene(io::CaseFile::of_text(
+        "gravity = [0.0, -9.81]\n[time]\nend = 1.0\nstep = 1e-2\n"
+        "[[rigid_body]]\nname = \"rod\"\nmass = 1.0\nsize = [1.0, 0.1]\n[[joint]]\n"
+        "type = \"revolute\"\nname = \"pin\"\n" +
+            joint,
+        "pendulum.toml", {}));
+    for (const ColumnInfo& c : MotionColumns(scene, {}, true).columns())
+      if (c.name == "pin.force_x") return c.meaning;
+    return std::string();
+  };
+  for (const char* joint : {"a = \"rod\"\nb = \"ground\"\n", "a = \"ground\"\nb = \"rod\"\n"})
+    EXPECT_NE(meaning(std::string(joint) + "point_a = [0.0, 0.0]\n").find("'rod'"),
+              std::string::npos);
+}
+
 template <class Source>
 void expect_quantities(std::span<const ResultQuantity<Source>> table) {
   std::set<std::string> names;
