@@ -16,8 +16,9 @@ io::QuadMesh rectangle(std::span<const Vec2> corners) {
 }
 
 /// Returns the von Mises stress of a plate at material points [Pa].
-std::vector<double> stress_of(const Body& plate, const fem::Body& model, const StepRecord& step,
+std::vector<double> stress_of(const Body& plate, const StepRecord& step,
                               std::span<const Vec2> materials) {
+  const fem::Body& model = step.model.body(plate.name);
   return membrane_stress(model, step.x, materials, plate.youngs_modulus, plate.poisson_ratio,
                          thermal_stretch(model, step.x.t, step.heating));
 }
@@ -41,18 +42,13 @@ DesignedSurface BodyShapes::designed(const StepRecord& step, size_t body) const 
   const VectorXd density = densities_.empty() ? VectorXd::Ones(grid.n_cells()) : densities_[d];
   const Body& drawn = scene_.bodies[body];
   const fem::Body& model = step.model.body(drawn.name);
-  DesignedSurface out = designed_surface(model, step.x, poses_[body], grid, density);
-  out.stress = stress_of(drawn, model, step, out.middles);
-  for (size_t k = 0; k < out.stress.size(); ++k) out.stress[k] *= out.density[k];
-  return out;
+  return designed_surface(model, step.x, poses_[body], grid, density);
 }
 
 Surface BodyShapes::deformed(const StepRecord& step, size_t body) const {
   const Body& drawn = scene_.bodies[body];
   const fem::Body& model = step.model.body(drawn.name);
-  Surface out = deformed_surface(*drawn.row, model, step.x, poses_[body], step.heating);
-  if (drawn.row->across) out.stress = stress_of(drawn, model, step, out.middles);
-  return out;
+  return deformed_surface(*drawn.row, model, step.x, poses_[body], step.heating);
 }
 
 void FrameWriter::add(const StepRecord& step) {
@@ -66,12 +62,18 @@ void FrameWriter::add(const StepRecord& step) {
 void FrameWriter::add_bodies(const StepRecord& step) {
   const Scene& scene = shapes_.scene();
   for (size_t i = 0; i < scene.bodies.size(); ++i) {
-    const std::string& name = scene.bodies[i].name;
+    const Body& body = scene.bodies[i];
     const int part = static_cast<int>(i);
-    if (shapes_.is_designed(i))
-      folder_.add_motion_frame(name, shapes_.designed(step, i), step.abscissa, part);
-    else
-      folder_.add_surface_frame(name, shapes_.deformed(step, i), step.abscissa, part);
+    if (shapes_.is_designed(i)) {
+      DesignedSurface surface = shapes_.designed(step, i);
+      surface.stress = stress_of(body, step, surface.middles);
+      for (size_t k = 0; k < surface.stress.size(); ++k) surface.stress[k] *= surface.density[k];
+      folder_.add_motion_frame(body.name, surface, step.abscissa, part);
+    } else {
+      Surface surface = shapes_.deformed(step, i);
+      if (body.row->across) surface.stress = stress_of(body, step, surface.middles);
+      folder_.add_surface_frame(body.name, surface, step.abscissa, part);
+    }
   }
 }
 

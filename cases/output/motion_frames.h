@@ -24,9 +24,9 @@ class BodyShapes {
   const Grid& grid_of(size_t body) const { return scene_.designs[design_of(body)].grid; }
   /// Returns the pose of an undeformed body at the start.
   const fem::ReferencePose& pose_of(size_t body) const { return poses_[body]; }
-  /// Returns the deformed surface of a body with a design, with one quad per cell.
+  /// Returns the deformed surface of a body with a design, with one quad per cell, without stress.
   DesignedSurface designed(const StepRecord& step, size_t body) const;
-  /// Returns the deformed mid-surface of a body without a design.
+  /// Returns the deformed mid-surface of a body without a design, without stress.
   Surface deformed(const StepRecord& step, size_t body) const;
 
  private:
