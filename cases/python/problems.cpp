@@ -5,6 +5,7 @@
 #include "cases/python/bindings.h"
 #include "cases/results/schema.h"
 #include "cases/run/design_problem.h"
+#include "optim/cancellable_problem.h"
 
 namespace flexmorph::python {
 namespace {
@@ -41,7 +42,7 @@ class Problem {
       if (std::memcmp(each.x.data(), x.data(), sizeof(double) * static_cast<size_t>(x.size())) == 0)
         return each.values;
     optim::ProblemValues found;
-    run([&] { found = functions().evaluate(x); });
+    run([&] { found = of_->evaluate(x); });
     ++evaluations_;
     constexpr size_t kKept = 4;
     if (known_.size() == kKept) known_.pop_back();
@@ -101,7 +102,8 @@ class Problem {
     optim::Result found;
     const Callback call(callback);
     const optim::Observer observe = [&](const optim::Iterate& it) { return see(it, call); };
-    run([&] { found = optim::make_optimizer(settings)->minimize(functions(), observe); });
+    optim::CancellableProblem problem(functions(), [this] { return flag_.keeps_running(); });
+    run([&] { found = optim::make_optimizer(settings)->minimize(problem, observe); });
     py::dict out;
     out["x"] = found.x;
     out["fun"] = found.response.f;

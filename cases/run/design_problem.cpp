@@ -1,6 +1,7 @@
 #include "cases/run/design_problem.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cases/run/motion_run.h"
 #include "geometry/text.h"
@@ -101,7 +102,7 @@ DesignProblem::DesignProblem(const PreparedCase& prepared, const DesignProblemSe
 
 DesignProblem::DesignProblem(std::shared_ptr<const Loaded> loaded, DesignStage stage,
                              std::vector<mmc::Design> designs)
-    : loaded_(std::move(loaded)) {
+    : loaded_(std::move(loaded)), stage_(stage) {
   const std::vector<mmc::Subproblem>& parts = loaded_->parts;
   for (const mmc::BodyProblem& p : loaded_->problems)
     formulations_.push_back(formulation(p, stage));
@@ -121,6 +122,49 @@ DesignProblem DesignProblem::at(DesignStage stage, const VectorXd& x) const {
                        std::to_string(combined_->problem().n_variables()) + " variables, not " +
                        std::to_string(x.size()));
   return {loaded_, stage, combined_->designs_at(x)};
+}
+
+/// Returns the limits of the designs that were evaluated last for which crisp and regularized
+/// values may differ.
+std::vector<DesignProblem::RegularizedLimit> DesignProblem::regularized_limits() const {
+  std::vector<RegularizedLimit> out;
+  for (size_t b = 0; b < loaded_->problems.size(); ++b) {
+    const mmc::MmcProblem& state = combined_->states[b];
+    const std::vector<mmc::Limit>& limits = state.goal().limits;
+    for (size_t k = 0; k < limits.size(); ++k) {
+      const mmc::Limit& limit = limits[k];
+      const std::optional<VectorXd> values = state.values(*limit.row);
+      const bool is_shared = loaded_->problems.size() > 1 && loaded_->problems[b].shares_mass;
+      if (!values || limit.row->of_motion || is_shared) continue;
+      for (Eigen::Index l = 0; l < values->size(); ++l)
+        out.push_back({combined_->row_of(b, k) + l, limit.at_least ? -1.0 : 1.0,
+                       limit.row->per_load || !limit.row->full, (*values)[l] / limit.value});
+    }
+  }
+  return out;
+}
+
+optim::ProblemValues DesignProblem::evaluate(const VectorXd& x) {
+  optim::Problem& of_crisp = combined_->problem();
+  if (stage_ != DesignStage::last) return of_crisp.evaluate(x);
+  const auto ratio = [](const RegularizedLimit& limit, double g) {
+    const double part = limit.is_logarithm ? std::exp(limit.sign * g) : 1 + limit.sign * g;
+    return part / limit.part;
+  };
+  if (!ratios_) {
+    const optim::ProblemValues start = of_crisp.evaluate(of_crisp.start());
+    ratios_.emplace();
+    for (const RegularizedLimit& limit : regularized_limits())
+      ratios_->push_back(ratio(limit, start.g[limit.row]));
+  }
+  optim::ProblemValues out = of_crisp.evaluate(x);
+  size_t next = 0;
+  for (const RegularizedLimit& limit : regularized_limits()) {
+    const double at_start = (*ratios_)[next++], part = at_start * limit.part;
+    if (!limit.is_logarithm) out.dg.row(limit.row) *= at_start / ratio(limit, out.g[limit.row]);
+    out.g[limit.row] = limit.sign * (limit.is_logarithm ? std::log(part) : part - 1);
+  }
+  return out;
 }
 
 std::vector<std::string> DesignProblem::bodies() const {

@@ -48,8 +48,16 @@ class DesignProblem {
   /// @throws Error (input) if x has another length than the variables
   DesignProblem at(DesignStage stage, const VectorXd& x) const;
 
-  /// Returns the problem that optimizers solve.
+  /// Returns the problem that the optimizers of Flexmorph solve. In the stage DesignStage::last,
+  /// its limits have the values of the crisp design and the gradients of the regularized one.
   optim::Problem& problem() { return combined_->problem(); }
+  /// Returns values and gradients at the design x for optimizers with a line search or a trust
+  /// region, which need values and gradients of one function. It differs from problem() in the
+  /// limits of DesignStage::last: they hold for the regularized design times the ratio of the crisp
+  /// to the regularized value at the start of this problem. At the start the values are those of
+  /// problem(); at(stage, x) gives the problem with the ratio of another design.
+  /// @throws Error (numerical) if the state cannot be solved at x or at the start
+  optim::ProblemValues evaluate(const VectorXd& x);
   /// Returns the names of the bodies, in the order of their variables.
   std::vector<std::string> bodies() const;
   /// Returns the names of the variables, such as "rocker.3.angle"; components count from 1.
@@ -73,11 +81,21 @@ class DesignProblem {
   struct Loaded;
   DesignProblem(std::shared_ptr<const Loaded> loaded, DesignStage stage,
                 std::vector<mmc::Design> designs);
+  /// A limit with its value for the regularized design.
+  struct RegularizedLimit {
+    Eigen::Index row;   ///< Row of the constraint.
+    double sign;        ///< -1 for a lower bound, 1 for an upper one.
+    bool is_logarithm;  ///< True for sign * log(part), false for sign * (part - 1).
+    double part;        ///< Value of the regularized response relative to its limit.
+  };
+  std::vector<RegularizedLimit> regularized_limits() const;
 
   std::shared_ptr<const Loaded> loaded_;
   std::vector<mmc::Formulation> formulations_;
   std::unique_ptr<mmc::MotionState> motion_;
   std::unique_ptr<mmc::CombinedProblem> combined_;
+  DesignStage stage_ = DesignStage::last;
+  std::optional<std::vector<double>> ratios_;  // crisp / regularized value of limits at the start
 };
 
 }  // namespace flexmorph::cases

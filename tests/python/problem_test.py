@@ -36,6 +36,22 @@ class Gradients(unittest.TestCase):
         problem = flexmorph.load("short_beam").problem(stage="coarse")
         self.check(problem, [1e-4 / 2 ** k for k in range(5)])
 
+    def test_last_stage(self):
+        # The limit on the crisp volume, which jumps with the grid, is made differentiable. Gradients of
+        # widths are approximate.
+        problem = flexmorph.load("short_beam", set=COARSE).problem()
+        x, d = direction_of(problem, 1)
+        at = problem.constraint_names.index("volume")
+        orders = support.taylor_orders(lambda y: problem.constraints(y)[at],
+                                       lambda y: problem.jacobian(y)[at], x, d,
+                                       [1e-3 / 2 ** k for k in range(4)])
+        for order in orders:
+            self.assertAlmostEqual(order, 2.0, delta=0.05, msg=str(orders))
+        # A problem that starts at x has the crisp volume of x, except for its finished corners.
+        again, crisp = problem.at("last", x), problem.crisp(x)["beam"]["volume"] / 0.4 - 1
+        self.assertAlmostEqual(again.constraints(x)[at], crisp, delta=1e-2)
+        self.assertGreater(abs(again.constraints(x)[at] - problem.constraints(x)[at]), 1e-5)
+
     def test_short_plate(self):
         problem = flexmorph.load(support.SHORT_PLATE).problem("plate")
         self.assertEqual(problem.bodies, ["plate"])
