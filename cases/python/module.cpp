@@ -5,24 +5,20 @@
 #include "cases/python/bindings.h"
 #include "cases/scene/version.h"
 #include "fem/solve/linear_solver.h"
-#include "geometry/vector_level.h"
+#include "geometry/processor_name.h"
 #include "optim/optimizer.h"
 
 namespace flexmorph::python {
 namespace {
-
-const char* name_of(VectorLevel level) {
-  if (level == VectorLevel::v4) return "v4";
-  return level == VectorLevel::v3 ? "v3" : "baseline";
-}
 
 py::dict build_info() {
   py::dict libraries;
   for (const auto& [name, version] : cases::library_versions()) libraries[name.c_str()] = version;
   py::dict out;
   out["version"] = cases::kVersion;
+  out["commit"] = cases::kCommit;
   out["blas_kernel"] = fem::blas_kernel();
-  out["vectors"] = name_of(vector_level());
+  out["vectors"] = vector_level_name();
   out["threads"] = omp_get_max_threads();
   out["libraries"] = libraries;
   return out;

@@ -10,6 +10,7 @@
 #include "cases/scene/heat/heat.h"
 #include "cases/scene/version.h"
 #include "fem/solve/linear_solver.h"
+#include "geometry/processor_name.h"
 #include "io/json.h"
 
 namespace flexmorph::cases {
@@ -279,10 +280,13 @@ Json info_results(const Scene& scene, const RunResult& result) {
   out["case"] = scene.name;
   out["title"] = scene.title;
   out["version"] = kVersion;
+  if (*kCommit) out["commit"] = kCommit;
   Json libraries = Json::object();
   for (const auto& [name, version] : library_versions()) libraries[name] = version;
   out["libraries"] = std::move(libraries);
+  out["processor"] = processor_name();
   out["blas_kernel"] = fem::blas_kernel();
+  out["vectors"] = vector_level_name();
   out["threads"] = info.threads;
   out["status"] = info.status;
   if (!info.message.empty()) out["message"] = info.message;

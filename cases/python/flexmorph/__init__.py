@@ -27,9 +27,10 @@ def build_info():
     Returns
     -------
     dict
-        ``version`` of Flexmorph, ``blas_kernel`` in use, ``vectors`` (widest instructions in use),
-        ``threads`` that OpenMP would use by default, and versions of ``libraries``. Results are equal
-        bit for bit if ``version``, ``blas_kernel``, ``vectors`` and ``libraries`` are equal.
+        ``version`` of Flexmorph, ``commit`` of its sources, ``blas_kernel`` in use, ``vectors``
+        (widest instructions in use), ``threads`` that OpenMP would use by default, and versions of
+        ``libraries``. Results are equal bit for bit if ``version``, ``commit``, ``blas_kernel``,
+        ``vectors`` and ``libraries`` are equal.
     """
     return _core.build_info()
 
