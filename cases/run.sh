@@ -7,7 +7,7 @@ cases/run.sh [CASE] [OPTION]...
 Installs missing packages, builds flexmorph and runs one case into runs/CASE.
   CASE    path of a case file or name of a shipped case (default: rotating_plate_v01)
   OPTION  option of 'flexmorph run': --set KEY=VALUE, -o FOLDER, --output FOLDER, --threads N,
-          --resume, --quiet, --condition, --explain, --open
+          --seconds N, --resume, --quiet, --condition, --explain, --open
 TEXT
 }
 
@@ -27,8 +27,8 @@ for option in "$@"; do
     -h | --help) usage && exit 0 ;;
     -o | --output) output=1 value=1 ;;
     -o?* | --output=*) output=1 ;;
-    --set | --threads) value=1 ;;
-    --set=* | --threads=* | --resume | --quiet | --condition | --explain | --open) ;;
+    --set | --threads | --seconds) value=1 ;;
+    --set=* | --threads=* | --seconds=* | --resume | --quiet | --condition | --explain | --open) ;;
     *) wrong "unknown option '$option'" ;;
   esac
 done

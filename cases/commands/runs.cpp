@@ -26,6 +26,8 @@ Command run_command(CLI::App& app) {
   run->add_flag("--open", options->open,
                 "opens the page of the run, which is renewed, in a browser");
   run->add_flag("--quiet", options->quiet, "prints no progress");
+  add_number(*run, "--seconds", options->seconds, 0.0, 1e9,
+             "CPU time after which the run ends as failed [s]");
   run->add_flag("--resume", options->resume, "continues a run of this case that is not finished");
   return {run, [options] { return run_case(*options); }, true, &options->threads};
 }

@@ -15,7 +15,8 @@ struct Failure {
   std::optional<double> load_factor;    ///< Last load factor that the path reached [-].
   std::optional<int> step;              ///< Number of steps or equilibria before the failure.
   std::optional<int> cycle, iteration;  ///< Cycle and iteration of the design.
-  std::string kind;                     ///< Kind of the error: "input", "numerical", "defect".
+  std::string kind;                     ///< Kind of the error: "input", "numerical", "defect"; or
+                                        ///< "limit" if the run reached its limit of CPU time.
   std::string cause;                    ///< Message of the error.
 };
 

@@ -1,7 +1,6 @@
 #include "cases/run/run.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <new>
@@ -19,6 +18,7 @@
 #include "io/case_files/case_parser.h"
 #include "io/files.h"
 #include "io/screen.h"
+#include "io/shell.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -84,17 +84,6 @@ std::optional<int> finished_with(const std::string& directory, const RunOptions&
   return missed ? kExpectationsMissed : 0;
 }
 
-/// Returns a word as a shell reads it, in quotes if it has other characters than those of names.
-std::string shell_word(const std::string& word) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("_-./=,:+").find(char(c)) != std::string::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 /// Removes the files that only resuming needs, from the folder of a complete run that was killed
 /// before it removed these files.
 void remove_progress_of_finished(const std::string& directory) {
@@ -108,11 +97,12 @@ void remove_progress_of_finished(const std::string& directory) {
 }  // namespace
 
 std::string resume_command(const RunOptions& options) {
-  std::vector<std::string> words = {"flexmorph run " + shell_word(options.case_name)};
+  std::vector<std::string> words = {"flexmorph run " + io::shell_word(options.case_name)};
   for (const std::string& change : options.overrides)
-    words.push_back("--set " + shell_word(change));
-  if (!options.directory.empty()) words.push_back("-o " + shell_word(options.directory));
+    words.push_back("--set " + io::shell_word(change));
+  if (!options.directory.empty()) words.push_back("-o " + io::shell_word(options.directory));
   if (options.threads != 1) words.push_back("--threads " + std::to_string(options.threads));
+  if (options.seconds > 0) words.push_back("--seconds " + io::to_text(options.seconds));
   if (options.condition) words.emplace_back("--condition");
   if (options.explain) words.emplace_back("--explain");
   words.emplace_back("--resume");
@@ -224,6 +214,7 @@ int run_case(const RunOptions& options) {
   if (directory.empty()) directory = scene.output.directory;
   if (directory.empty()) directory = "runs/" + scene.name;
   end_on_signals();
+  limit_cpu_time(options.seconds);
   Progress progress(options.quiet);
   ComputeSettings settings;
   settings.keep_running = keeps_running;

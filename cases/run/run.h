@@ -21,6 +21,7 @@ struct RunOptions {
   int threads = 1;                     ///< Number of motions computed at the same time.
   bool quiet = false;                  ///< True if only warnings and errors are printed.
   bool resume = false;                 ///< True if a run of the same case in the folder is resumed.
+  double seconds = 0;      ///< CPU time after which the run ends as failed [s]; 0: no limit.
   bool open = false;       ///< True if the page of the run is opened in a browser at its start.
   bool explain = false;    ///< True if the folder receives the case with all its defaults.
   bool condition = false;  ///< True if conditions of matrices are estimated at the end.

@@ -1,10 +1,12 @@
 #include "cases/run/run_end.h"
 
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 
@@ -20,6 +22,8 @@ namespace flexmorph::cases {
 namespace {
 
 std::atomic<bool> interrupted = false;  // set by a signal, read by every motion
+std::atomic<bool> over_time = false;    // set by the signal of the timer
+double time_limit = 0;                  // [s]
 
 /// Returns the CPU times of the phases of a run with designs [s]: iterations, outlines of final
 /// designs, post-processing, motions, verification of outlines, and motions that assess designs.
@@ -51,7 +55,21 @@ void end_on_signals() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-bool keeps_running() { return !interrupted; }
+void limit_cpu_time(double seconds) {
+  if (seconds <= 0) return;
+  time_limit = seconds;
+  std::signal(SIGPROF, [](int) { over_time = true; });
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  timer.it_value.tv_usec =
+      std::max<suseconds_t>(1, static_cast<suseconds_t>(1e6 * (seconds - std::floor(seconds))));
+  setitimer(ITIMER_PROF, &timer, nullptr);
+  const auto last = static_cast<rlim_t>(std::ceil(seconds + kSecondsAfterLimit));
+  const rlimit limit{last, last};
+  setrlimit(RLIMIT_CPU, &limit);
+}
+
+bool keeps_running() { return !interrupted && !over_time; }
 
 bool is_another_case(std::span<const std::string> overrides) {
   return std::any_of(overrides.begin(), overrides.end(), [](const std::string& each) {
@@ -104,6 +122,14 @@ int end_early(EndedRun& ended, RunFiles& files, Progress& progress) {
   try {
     std::rethrow_exception(ended.error);
   } catch (const Interrupted&) {
+    if (over_time && !interrupted) {
+      Failure failure = progress.where();
+      failure.kind = "limit";
+      failure.cause = "ended after " + io::to_text(time_limit, 3) + " CPU seconds";
+      ended.result.failure = failure;
+      files.write_failed(std::move(ended.result), failure.cause);
+      throw Error::numerical(failure.cause);
+    }
     files.write(std::move(ended.result), "interrupted", "");
     progress.say("interrupted: The results computed so far are in " + files.folder().path());
     return 4;

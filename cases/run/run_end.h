@@ -20,7 +20,16 @@ inline constexpr int kExpectationsMissed = 5;
 /// step or iteration and writes its results. A second signal ends the process at once. SIGPIPE is
 /// ignored, so that a run continues when the reader of its output ends.
 void end_on_signals();
-/// Tells whether none of the signals of end_on_signals() was received.
+/// Limits the CPU time of the process. At the limit the run completes its current step or iteration
+/// and fails with the results so far (Failure::kind is "limit"). The system ends a process that
+/// needs kSecondsAfterLimit more.
+/// @param seconds  limit [s]; 0: none
+void limit_cpu_time(double seconds);
+/// CPU time between the limit of limit_cpu_time() and the end of the process by the system [s].
+inline constexpr double kSecondsAfterLimit = 60;
+
+/// Tells whether none of the signals of end_on_signals() was received and no limit of
+/// limit_cpu_time() is reached.
 bool keeps_running();
 
 /// Tells whether overrides change the case, so that [expect] does not apply to it. Overrides of
