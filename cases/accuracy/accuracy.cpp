@@ -5,13 +5,14 @@
 #include <filesystem>
 #include <limits>
 
+#include "cases/accuracy/level_rows.h"
 #include "cases/accuracy/recommendation.h"
 #include "cases/accuracy/report.h"
 #include "cases/assembly/build.h"
 #include "cases/assembly/resource_estimate.h"
 #include "cases/check/ready.h"
-#include "cases/output/run_folder.h"
 #include "cases/run/run.h"
+#include "cases/study/rows.h"
 #include "io/files.h"
 
 namespace flexmorph::cases {
@@ -52,23 +53,42 @@ class Measurement {
         file_(find_case(options.study.case_name), options.study.overrides),
         prepared_(read_scene(file_)),
         scene_(prepared_.scene()),
-        budget_(read_duration("--budget", options.budget)) {
+        budget_(read_duration("--budget", options.budget)),
+        rows_(scene_, study_, with_folder(options.study, scene_)) {
     require_buildable(prepared_);
-    runs_.directory =
-        options.study.directory.empty() ? "runs/accuracy_" + scene_.name : options.study.directory;
-    runs_.case_name = options.study.case_name;
-    runs_.overrides = options.study.overrides;
-    runs_.threads = options.study.threads;
-    runs_.quiet = true;
+    // The budget chooses levels one after the other. Rows that are run elsewhere have none.
+    if (rows_.are_elsewhere()) budget_ = std::numeric_limits<double>::infinity();
     study_.title = "Accuracy of " + scene_.name;
     add_quantities();
     add_series();
   }
 
-  void run() {
-    if (scene_.accuracy->optimized && study_.own.contains(Part::design)) optimize();
+  /// Runs, collects or prints the rows of the study.
+  /// @return exit code: 0, or 4 if rows are missing
+  int run() {
+    const Dispatch& dispatch = options_.study.dispatch;
+    if (dispatch.prints()) {
+      print_rows();
+      return 0;
+    }
+    if (!dispatch.hosts.empty()) rows_.run_known(options_.study.quiet);
+    evaluate_rows();
+    write();
+    return rows_.missing().empty() ? 0 : 4;
+  }
+
+ private:
+  static StudyOptions with_folder(StudyOptions options, const Scene& scene) {
+    if (options.directory.empty()) options.directory = "runs/accuracy_" + scene.name;
+    return options;
+  }
+
+  /// Measures all levels, and finds the recommendations.
+  void evaluate_rows() {
+    if (rows_.start_from_optimum()) optimize();
     for (auto& [part, run] : study_.own) {
       measure(part, to_string(part), run, 0);
+      if (run.status == kMissing) throw Interrupted();
       if (!run.measured())
         throw Error::numerical("accuracy: the run of the unchanged case failed: " + run.message);
     }
@@ -76,14 +96,32 @@ class Measurement {
     evaluate(study_);
     for (const auto& [target, name] : kTargets)
       study_.recommendations.push_back(recommended(target, name));
-    write_accuracy_csv(study_, path("accuracy.csv"));
-    io::write_file(path("accuracy.md"), accuracy_markdown(study_));
-    io::write_file(path("accuracy.svg"), accuracy_svg(study_));
-    print_text(accuracy_text(study_) + runs_.directory + "/accuracy.md, .csv, .svg");
   }
 
- private:
-  std::string path(const std::string& name) const { return runs_.directory + "/" + name; }
+  void write() const {
+    write_accuracy_csv(study_, path("accuracy.csv"));
+    io::write_file(path("accuracy.md"), accuracy_markdown(study_) + origin_note(rows_.results()));
+    io::write_file(path("accuracy.svg"), accuracy_svg(study_));
+    print_text(accuracy_text(study_) + rows_note(rows_.results(), true) + directory() +
+               "/accuracy.md, .csv, .svg, rows.csv");
+  }
+
+  /// Prints the command lines of the known rows, and of the runs that verify recommendations if all
+  /// levels are measured.
+  void print_rows() {
+    std::vector<Variant> rows = rows_.known();
+    const LevelRows printer = rows_;
+    if (rows_.have_results(rows)) {
+      options_.study.quiet = true;
+      rows_.collect();
+      evaluate_rows();
+      rows.insert(rows.end(), rows_.missing().begin(), rows_.missing().end());
+    }
+    printer.print(rows);
+  }
+
+  std::string path(const std::string& name) const { return directory() + "/" + name; }
+  const std::string& directory() const { return rows_.options().directory; }
   double left() const { return std::max(0.0, budget_ - spent_); }
 
   void add_quantities() {
@@ -146,7 +184,8 @@ class Measurement {
       run.level = std::move(level);
       try {
         run.unknowns = unknowns_of(
-            PreparedCase(read_scene(case_of(runs_, variant(part, "", run.level)))), part);
+            PreparedCase(read_scene(case_of(rows_.options(), rows_.row(part, "", run.level)))),
+            part);
       } catch (const Error& error) {
         run.status = "refused";
         run.message = error.what();
@@ -156,58 +195,24 @@ class Measurement {
 
   /// Optimizes the case. All levels then analyse the optimized designs.
   void optimize() {
-    const Variant one{
-        "optimized", {"output.vtk=false", "output.plots=false", "output.crisp_every=0", "verify="}};
-    const VariantResult result = result_of(one);
+    const VariantResult result = rows_.result_of(LevelRows::optimization(), 0, false);
+    if (result.status == kMissing) throw Interrupted();
     if (!result.done())
       throw Error::numerical("accuracy: the optimization failed: " + result.message);
     spent_ += result.seconds_cpu;
-    const std::string folder = fs::absolute(result.directory).string();
-    for (size_t i = 0; i < scene_.designs.size(); ++i)
-      starts_.push_back("design." + std::to_string(i) + ".start='" + folder + "/" +
-                        components_name(scene_, scene_.designs[i].body) + "'");
+    rows_.take_optimum();
     if (!options_.study.quiet)
       print_text("optimization: " + io::to_text(result.seconds_cpu, 3) + " CPU s");
   }
 
-  VariantResult result_of(const Variant& variant) const {
-    const StudyOutcome outcome = run_variants(runs_, {&variant, 1}, [](auto) {});
-    if (outcome.exit_code == 4) throw Interrupted();
-    return outcome.results.front();
-  }
-
-  Variant variant(Part part, const std::string& name, const Level& level) const {
-    Variant out{name, lean_overrides(scene_, part)};
-    if (const auto last = last_time(); part == Part::motion && last)
-      out.overrides.push_back("time.end=" + io::to_text(*last));
-    for (const auto& more :
-         {part == Part::design ? starts_ : std::vector<std::string>(), level.overrides})
-      out.overrides.insert(out.overrides.end(), more.begin(), more.end());
-    return out;
-  }
-
-  /// Returns the last time at which a quantity of the motion is needed, if it is before the end of
-  /// the motion. A start from a static hub has no such time, because the default duration of its
-  /// spin-up depends on the end time.
-  std::optional<double> last_time() const {
-    if (scene_.domain || scene_.statics || scene_.time.start == Start::hub_at_rest) return {};
-    double out = 0;
-    for (size_t q = 0; q < study_.interests.size(); ++q) {
-      if (study_.parts[q] != Part::motion) continue;
-      if (study_.interests[q].at != Interest::At::time) return {};
-      out = std::max(out, study_.interests[q].time);
-    }
-    return out > 0 && out < scene_.time.end ? std::optional(out) : std::nullopt;
-  }
-
   /// Measures a level by a run, or reads the results of an earlier run of the level.
-  /// @param limit  limit of the CPU time [s]; 0 means no limit
-  void measure(Part part, const std::string& name, LevelRun& run, double limit) {
-    runs_.time_limit = limit;
-    const VariantResult result = result_of(variant(part, name, run.level));
-    runs_.time_limit = 0;
+  /// @param limit     limit of the CPU time [s]; 0 means no limit
+  /// @param verifies  true if the run verifies a recommendation
+  void measure(Part part, const std::string& name, LevelRun& run, double limit,
+               bool verifies = false) {
+    const VariantResult result = rows_.result_of(rows_.row(part, name, run.level), limit, verifies);
     run.values.assign(study_.interests.size(), std::numeric_limits<double>::quiet_NaN());
-    run.status = result.done() ? "measured" : "failed";
+    run.status = result.done() ? "measured" : result.status == kMissing ? kMissing : "failed";
     run.message = result.message;
     run.seconds_cpu = result.seconds_cpu;
     run.memory = result.peak_memory_bytes;
@@ -219,8 +224,8 @@ class Measurement {
         run.values[q] = value_in(result.directory, study_.interests[q], part);
     if (options_.study.quiet) return;
     print_text("run " + std::to_string(++n_runs_) + ", " + name + " " + run.level.name + ": " +
-               run.status + ", " + io::to_text(run.seconds_cpu, 3) + " CPU s; remaining budget " +
-               duration_text(left()));
+               run.status + ", " + io::to_text(run.seconds_cpu, 3) + " CPU s" +
+               (std::isfinite(budget_) ? "; remaining budget " + duration_text(left()) : ""));
   }
 
   /// Measures levels, beginning with short runs, until the budget is used.
@@ -241,13 +246,11 @@ class Measurement {
         run = std::move(copy);
       }
     }
-    const double reserve = options_.verify ? kReserve * budget_ : 0;
+    const double reserve = options_.verify && std::isfinite(budget_) ? kReserve * budget_ : 0;
     while (const auto next = next_level(study_.series, left() - reserve)) {
       RefinementSeries& series = study_.series[next->first];
       const double limit = std::max(kMinTimeLimit, kPatience * series.seconds(next->second));
-      const std::string name = to_string(series.part) + "_" + series.parameter->name + "_" +
-                               std::to_string(next->second + 1);
-      measure(series.part, name, series.levels[next->second],
+      measure(series.part, LevelRows::name_of(series, next->second), series.levels[next->second],
               std::min(limit, std::max(1.0, left())));
     }
   }
@@ -285,7 +288,12 @@ class Measurement {
     for (const auto& [part, own] : study_.own) {
       LevelRun run;
       run.level.overrides = r.overrides;
-      measure(part, to_string(part) + "_" + name, run, std::max(1.0, left()));
+      measure(part, to_string(part) + "_" + name, run,
+              std::isfinite(left()) ? std::max(1.0, left()) : 0, true);
+      if (run.status == kMissing) {
+        r.sentence = "not verified: the run with these settings is missing";
+        return;
+      }
       if (!run.measured()) {
         r.withdrawn = !run.message.starts_with(kEnded);
         r.sentence = r.withdrawn ? "withdrawn: the run with these settings failed: " + run.message
@@ -310,7 +318,7 @@ class Measurement {
           return each.find(".elements=") != std::string::npos;
         }))
       overrides.emplace_back("verify=");
-    const io::CaseFile changed = case_of(runs_, {"", overrides});
+    const io::CaseFile changed = case_of(rows_.options(), {"", overrides});
     try {
       read_scene(changed);
     } catch (const Error& error) {
@@ -327,11 +335,10 @@ class Measurement {
   io::CaseFile file_;
   PreparedCase prepared_;
   const Scene& scene_;
-  StudyOptions runs_;
   double budget_ = 0, spent_ = 0;  // allowed and used CPU time of all runs [s]
   int n_runs_ = 0;
-  std::vector<std::string> starts_;  // overrides that set the starts of the designs
   AccuracyStudy study_;
+  LevelRows rows_;
 };
 
 }  // namespace
@@ -339,11 +346,10 @@ class Measurement {
 int accuracy_case(const AccuracyOptions& options) {
   Measurement measurement(options);
   try {
-    measurement.run();
+    return measurement.run();
   } catch (const Interrupted&) {
     return 4;
   }
-  return 0;
 }
 
 }  // namespace flexmorph::cases

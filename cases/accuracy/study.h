@@ -16,7 +16,8 @@ namespace flexmorph::cases {
 /// A level of a refinement series, and the result of its run.
 struct LevelRun {
   Level level;                         ///< The setting.
-  std::string status = "open";         ///< Status: "open", "measured", "cut", "refused", "failed".
+  std::string status = "open";         ///< Status: "open", "measured", "cut", "refused", "failed",
+                                       ///< "missing".
   std::string message;                 ///< Reason of a refusal or failure.
   double seconds_cpu = 0, memory = 0;  ///< CPU time [s] and peak memory [bytes].
   int unknowns = 0;                    ///< Number of unknowns of the discretized problem.

@@ -17,12 +17,41 @@ void add_jobs(CLI::App& command, int& jobs) {
   add_number(command, "--jobs", jobs, 1, 1024, "number of processes at the same time");
 }
 
+/// Adds the options that say where the rows of a study are run.
+void add_dispatch(CLI::App& command, Dispatch& dispatch) {
+  CLI::Option* commands =
+      command.add_flag("--commands", dispatch.commands,
+                       "prints a command line per row, which may be repeated, and runs none");
+  CLI::Option* collect = command.add_flag("--collect", dispatch.collect,
+                                          "makes the tables of the rows that exist, runs none");
+  CLI::Option* hosts = add_value(command, "--hosts", dispatch.hosts, "FILE",
+                                 "runs the rows on machines by GNU parallel (its --sshloginfile)");
+  CLI::Option* sbatch =
+      command
+          .add_option_function<std::string>(
+              "--sbatch", [&dispatch](const std::string& text) { dispatch.sbatch = text; },
+              "prints a script that runs the rows as a job array of Slurm")
+          ->type_name("OPTIONS");
+  CLI::Option* shared =
+      command.add_flag("--shared-disk", dispatch.shared_disk,
+                       "the machines of --hosts have this folder, so that no file is sent");
+  shared->needs(hosts);
+  add_value(command, "--program", dispatch.program, "COMMAND",
+            "command that starts the program in the rows of --commands, --hosts and --sbatch "
+            "(default flexmorph)");
+  const std::vector<CLI::Option*> all = {commands, collect, hosts, sbatch};
+  for (CLI::Option* each : all)
+    for (CLI::Option* other : all)
+      if (each != other) each->excludes(other);
+}
+
 void add_study(CLI::App& command, StudyOptions& study, const std::string& folder) {
   add_case(command, study.case_name, study.overrides);
   add_value(command, "-o,--output", study.directory, "FOLDER",
             "folder of the study (default " + folder + ")");
   add_threads(command, study.threads);
   command.add_flag("--quiet", study.quiet, "prints no progress");
+  add_dispatch(command, study.dispatch);
 }
 
 /// Options of the command `compare`: optimizers are compared, or cycles if any is named.
@@ -62,9 +91,6 @@ Command sweep_command(CLI::App& app) {
   add_jobs(*command, options->study.jobs);
   add_repeated(*command, "--vary", options->vary, "KEY=V1,V2,...",
                "values of a key, or cases with the key `case`; may be repeated");
-  add_number(*command, "--index", options->index, 1, 1'000'000,
-             "runs only the variant with this number, for job arrays");
-  command->add_flag("--list", options->list, "prints the variants and runs none");
   add_value(*command, "--reference", options->reference, "FILE.csv",
             "columns of motion.csv that are plotted as points (for cases without a design)");
   return {command, [options] { return sweep_case(*options); }};
@@ -109,6 +135,7 @@ Command stability_command(CLI::App& app) {
   add_value(*command, "-o,--output", options->directory, "FOLDER",
             "folder of the study (default " + options->directory + ")");
   command->add_flag("--quiet", options->quiet, "prints only the summary and WRONG runs");
+  add_dispatch(*command, options->dispatch);
   return {command, [options] { return check_stability(*options); }};
 }
 

@@ -8,6 +8,7 @@
 #include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/stability/suites.h"
+#include "cases/study/rows.h"
 #include "geometry/sanitizers.h"
 #include "io/files.h"
 
@@ -99,6 +100,8 @@ int check_stability(const StabilityOptions& options) {
   if (!kSanitized) study.memory_limit = kMemoryLimit;
   study.arguments = {"--condition"};
   study.keeps_failures = true;
+  study.dispatch = options.dispatch;
+  if (study.dispatch.prints()) return run_variants(study, plan.variants, {}).exit_code;
   const std::string stem = options.directory + "/stability";
   size_t calls = 0;
   const auto changed = [&](std::span<const VariantResult> results) {
@@ -107,7 +110,8 @@ int check_stability(const StabilityOptions& options) {
   };
   const StudyOutcome outcome = run_variants(study, plan.variants, changed);
   const std::vector<StabilityRow> ran = write_tables(stem, plan.rows);
-  print_text(stability_text(ran, !options.quiet) + stem + ".csv, .md, .svg");
+  print_text(stability_text(ran, !options.quiet) + rows_note(outcome.results, true) + stem +
+             ".csv, .md, .svg, rows.csv");
   const bool any_wrong = std::any_of(ran.begin(), ran.end(), [](const StabilityRow& row) {
     return row.assessment.verdict == StabilityVerdict::wrong;
   });

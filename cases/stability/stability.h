@@ -17,6 +17,7 @@ struct StabilityOptions {
   int jobs = 1;                              ///< Number of processes at the same time.
   double timeout = 60;                       ///< Limit of the CPU time of a run [s].
   bool quiet = false;  ///< True if only the summary and the rows that are WRONG are printed.
+  Dispatch dispatch;   ///< Destination of the runs.
 };
 
 /// A row of the report: one changed run of one case, and its verdict.
@@ -32,7 +33,7 @@ struct StabilityRow {
 /// Writes stability.csv, .md and .svg, which are rewritten after every tenth run, and one run
 /// folder per run. If a run with the same case has already ended, it is assessed again from its
 /// files.
-/// @return exit code: 0; 3 if a run is WRONG; 4 if interrupted
+/// @return exit code: 0; 3 if a run is WRONG; 4 if runs are missing or interrupted
 /// @throws Error (input) for an unknown case or suite, and for an unchanged case that is refused
 int check_stability(const StabilityOptions& options);
 

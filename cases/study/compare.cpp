@@ -6,6 +6,7 @@
 #include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/study/compare_report.h"
+#include "cases/study/rows.h"
 #include "geometry/text.h"
 #include "io/tables.h"
 #include "optim/optimizer.h"
@@ -79,14 +80,17 @@ int compare_case(const CompareOptions& wanted) {
   CompareOptions options = wanted;
   const Comparison comparison = plan(options);
   const std::string& directory = options.study.directory;
-  check_variants(options.study, comparison.variants);
+  if (!options.study.dispatch.collect) check_variants(options.study, comparison.variants);
+  if (options.study.dispatch.prints())
+    return run_variants(options.study, comparison.variants, {}).exit_code;
   const StudyOutcome outcome = run_variants(
       options.study, comparison.variants,
       [&](std::span<const VariantResult> runs) { write_comparison(comparison, runs, directory); });
   print_table(summary_of(comparison, outcome.results), "compare.md");
   print_text(warnings_note(outcome.results));
   print_text(convergence_note(outcome.results));
-  print_text(directory + ": compare.html, compare.md, compare.csv, compare.svg\n");
+  print_text(rows_note(outcome.results));
+  print_text(directory + ": compare.html, compare.md, compare.csv, compare.svg, rows.csv\n");
   return outcome.exit_code;
 }
 

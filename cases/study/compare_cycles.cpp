@@ -7,6 +7,7 @@
 #include "cases/assembly/build.h"
 #include "cases/check/ready.h"
 #include "cases/run/run.h"
+#include "cases/study/rows.h"
 #include "io/plots.h"
 #include "io/tables.h"
 
@@ -90,7 +91,7 @@ std::vector<std::vector<std::string>> table_of(const std::vector<Result>& result
 }
 
 void write(const std::vector<Result>& results, const std::string& directory,
-           const std::string& name) {
+           const std::string& name, const std::string& note) {
   const auto rows = table_of(results);
   std::vector<std::vector<io::Cell>> cells;
   for (size_t i = 1; i < rows.size(); ++i) cells.emplace_back(rows[i].begin(), rows[i].end());
@@ -103,7 +104,8 @@ void write(const std::vector<Result>& results, const std::string& directory,
           "certificates use one motion. If the corrected cycles do not reduce J of the "
           "crisp outlines on the design mesh of the case, the final design is the design "
           "before them. The CPU time of the corrections does not include the design "
-          "under equivalent static loads, with which all runs begin.\n");
+          "under equivalent static loads, with which all runs begin.\n" +
+          note);
   io::Figure figure{.title = name,
                     .panels = {{.x = {.label = "CPU time of corrections [s]"},
                                 .y = {.label = "smallest J so far"}}}};
@@ -133,7 +135,8 @@ int compare_cycles(const CompareCyclesOptions& wanted) {
     const Way& way = way_called(name);
     variants.push_back({way.name, way.changes});
   }
-  check_variants(study, variants);
+  if (!study.dispatch.collect) check_variants(study, variants);
+  if (study.dispatch.prints()) return run_variants(study, variants, {}).exit_code;
   const auto results_of = [&] {
     std::vector<Result> out;
     for (const Variant& v : variants) {
@@ -143,11 +146,13 @@ int compare_cycles(const CompareCyclesOptions& wanted) {
     }
     return out;
   };
-  const StudyOutcome outcome = run_variants(study, variants, [&](std::span<const VariantResult>) {
-    write(results_of(), study.directory, scene.title);
-  });
+  const StudyOutcome outcome =
+      run_variants(study, variants, [&](std::span<const VariantResult> rows) {
+        write(results_of(), study.directory, scene.title, rows_note(rows));
+      });
   print_table(table_of(results_of()), "compare.md");
   print_text(warnings_note(outcome.results));
+  print_text(rows_note(outcome.results));
   std::printf("%s/compare.md, .csv, .svg\n", study.directory.c_str());
   return outcome.exit_code;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/study/rows.h"
 #include "cases/study/statistics.h"
 #include "cases/study/study_page.h"
 #include "io/files.h"
@@ -165,12 +166,12 @@ void write_comparison(const Comparison& plan, std::span<const VariantResult> run
   const Rows summary = summary_of(plan, runs), rows = result_rows(plan.table, runs);
   io::write_file(stem + ".md", "# " + plan.case_name + "\n\n" + io::markdown_table(summary) + "\n" +
                                    note + "\n\n" + io::markdown_table(rows) +
-                                   convergence_note(runs));
+                                   convergence_note(runs) + rows_note(runs));
   const io::Figure figure = comparison_figure(plan, runs);
   io::write_file(stem + ".svg", io::plot_svg(figure));
   StudyPage page;
   page.title = plan.case_name + ": comparison of optimizers";
-  page.notes = {note};
+  page.notes = {note, rows_note(runs)};
   page.summary = summary;
   page.rows = rows;
   page.plots = {{"comparison", figure}};

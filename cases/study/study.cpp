@@ -11,6 +11,7 @@
 #include "cases/run/progress.h"
 #include "cases/run/run.h"
 #include "cases/study/processes.h"
+#include "cases/study/rows.h"
 #include "io/files.h"
 #include "io/output_folder.h"
 
@@ -29,32 +30,20 @@ const std::string& case_name_of(const StudyOptions& options, const Variant& vari
   return variant.case_name.empty() ? options.case_name : variant.case_name;
 }
 
-bool finished(const StudyOptions& options, const Variant& variant, const VariantResult& result) {
-  const bool ended = result.done() || (options.keeps_failures && result.status == "failed");
-  return ended && keeps_case(folder_of(options, variant), case_of(options, variant));
-}
-
 /// Returns the process that runs a variant with this program. Its output is written to a log file
 /// next to its folder.
 Child child_of(const StudyOptions& options, const Variant& variant) {
   const std::string folder = folder_of(options, variant);
-  Child out;
-  out.log = folder + ".log";
-  out.words = {"run",       case_name_of(options, variant), "-o", folder,
-               "--threads", io::to_text(options.threads)};
-  // Failures that are results are read from the log, which then contains nothing else.
-  if (options.quiet || options.keeps_failures) out.words.emplace_back("--quiet");
-  out.words.insert(out.words.end(), options.arguments.begin(), options.arguments.end());
   // A killed run of the same case is resumed. If the case was changed, a new run starts, and the
   // old folder is moved.
-  if (keeps_case(folder, case_of(options, variant))) out.words.emplace_back("--resume");
-  for (const std::string& change : overrides_of(options, variant)) {
-    out.words.emplace_back("--set");
-    out.words.push_back(change);
-  }
+  Child out{row_arguments(options, variant, keeps_case(folder, case_of(options, variant))),
+            folder + ".log"};
+  // Failures that are results are read from the log, which then contains nothing else.
+  if (options.quiet || options.keeps_failures) out.words.emplace_back("--quiet");
   return out;
 }
 
+constexpr double kSecondsToEnd = 10;                  // CPU time of a run after its time limit [s]
 constexpr std::chrono::seconds kBetweenProgress(20);  // time between lines about running variants
 
 void say(const StudyOptions& options, const std::string& line) {
@@ -65,7 +54,9 @@ void say(const StudyOptions& options, const std::string& line) {
 /// Returns the result of a run that has just ended. A run without a status of its own has failed.
 VariantResult result_of(const StudyOptions& options, const Variant& variant, const Ending& ending) {
   VariantResult out = read_result(options, variant);
+  const bool limited = out.ending.over_time;
   out.ending = ending;
+  out.ending.over_time = ending.over_time || limited;
   if (ending.over_time) {
     out.status = "failed";
     out.message = "ended after " + io::to_text(options.time_limit, 3) + " CPU seconds";
@@ -82,12 +73,6 @@ VariantResult result_of(const StudyOptions& options, const Variant& variant, con
     if (out.message.empty()) out.message = "the run folder has no run.json of a finished run";
   }
   return out;
-}
-
-void make_folder(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw Error::input("folder '" + path + "' cannot be created: " + error.message());
 }
 
 }  // namespace
@@ -123,34 +108,26 @@ void check_variants(const StudyOptions& options, std::span<const Variant> varian
     require_buildable(PreparedCase(read_scene(case_of(options, v))));
 }
 
-int run_variant(const StudyOptions& options, const Variant& variant) {
-  make_folder(options.directory);
-  io::require_study_folder(options.directory);
-  if (finished(options, variant, read_result(options, variant))) {
-    say(options, variant.name + ": finished before");
-    return 0;
+std::vector<std::string> row_arguments(const StudyOptions& options, const Variant& variant,
+                                       bool resume) {
+  std::vector<std::string> out = {"run", case_name_of(options, variant)};
+  for (const std::string& change : overrides_of(options, variant)) {
+    out.emplace_back("--set");
+    out.push_back(change);
   }
-  int code = 4;  // exit code if the run is interrupted before it starts
-  run_children({child_of(options, variant)}, 1, {.seconds = options.time_limit},
-               {.started = [&](size_t) { say(options, variant.name + ": started"); },
-                .ended =
-                    [&](size_t, const Ending& ending) {
-                      const VariantResult result = result_of(options, variant, ending);
-                      say(options, variant.name + ": " + result.words());
-                      if (!result.message.empty())
-                        std::fprintf(stderr, "flexmorph: %s: %s\n", variant.name.c_str(),
-                                     result.message.c_str());
-                      // Expectations of the case do not apply to its variants.
-                      if (result.status == "interrupted")
-                        code = 4;
-                      else
-                        code = result.done() ? 0 : ending.code < 0 ? 3 : ending.code;
-                    }});
-  return code;
+  out.insert(out.end(), {"-o", folder_of(options, variant)});
+  if (options.threads != 1) out.insert(out.end(), {"--threads", io::to_text(options.threads)});
+  if (options.time_limit > 0) out.insert(out.end(), {"--seconds", io::to_text(options.time_limit)});
+  out.insert(out.end(), options.arguments.begin(), options.arguments.end());
+  if (resume) out.emplace_back("--resume");
+  return out;
 }
 
-StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
-                          const std::function<void(std::span<const VariantResult>)>& changed) {
+namespace {
+
+/// Runs the variants that are not finished yet on this machine.
+StudyOutcome run_here(const StudyOptions& options, std::span<const Variant> variants,
+                      const ResultsChanged& changed) {
   make_folder(options.directory);
   const io::FolderLock lock(options.directory);
   StudyOutcome out;
@@ -158,8 +135,13 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
   std::vector<Child> children;
   for (size_t i = 0; i < variants.size(); ++i) {
     out.results.push_back(read_result(options, variants[i]));
-    if (finished(options, variants[i], out.results[i])) {
+    if (is_answered(options, variants[i], out.results[i])) {
       say(options, variants[i].name + ": finished before");
+      if (out.results[i].status == "failed" && !options.keeps_failures) {
+        out.exit_code = 3;
+        std::fprintf(stderr, "flexmorph: %s: %s\n", variants[i].name.c_str(),
+                     out.results[i].message.c_str());
+      }
       continue;
     }
     // Results of an earlier run of another case in the folder do not belong to this study.
@@ -202,7 +184,10 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
                completed_text(text_of(children[at].log));
     say(options, words);
   };
-  const ChildLimits limits{.seconds = options.time_limit, .memory = options.memory_limit};
+  // A run ends itself at its time limit, unless it hangs.
+  const ChildLimits limits{
+      .seconds = options.time_limit > 0 ? options.time_limit + kSecondsToEnd : 0,
+      .memory = options.memory_limit};
   const bool whole = run_children(children, options.jobs, limits,
                                   {.started = started, .ended = collect, .waiting = waiting});
   changed(out.results);
@@ -211,6 +196,24 @@ StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> 
     say(options, "interrupted: the same command continues the study in " + options.directory);
   }
   return out;
+}
+
+}  // namespace
+
+StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
+                          const std::function<void(std::span<const VariantResult>)>& changed) {
+  const Dispatch& dispatch = options.dispatch;
+  if (dispatch.prints()) {
+    std::fputs(rows_text(options, variants).c_str(), stdout);
+    return {};
+  }
+  const auto write_and_tell = [&](std::span<const VariantResult> rows) {
+    write_rows(rows, options.directory + "/rows.csv");
+    changed(rows);
+  };
+  if (dispatch.collect) return collect_rows(options, variants, write_and_tell);
+  if (!dispatch.hosts.empty()) return run_on_hosts(options, variants, write_and_tell);
+  return run_here(options, variants, write_and_tell);
 }
 
 std::vector<std::string> lean_overrides(const Scene& scene, Part part) {

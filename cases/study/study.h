@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cases/results/quantities.h"
+#include "cases/study/dispatch.h"
 #include "cases/study/processes.h"
 #include "io/case_files/case_file.h"
 #include "optim/mmc/problem/body_problem.h"
@@ -25,9 +26,9 @@ struct StudyOptions {
   double time_limit = 0;               ///< CPU time after which a run is ended [s]; 0: no limit.
   double memory_limit = 0;             ///< Address space of a run [bytes]; 0: no limit.
   std::vector<std::string> arguments;  ///< Further arguments of every `flexmorph run`.
+  Dispatch dispatch;                   ///< Destination of the runs.
 
-  /// True if a failed run counts as a result: it is not run again with the same case, and it is not
-  /// reported as an error.
+  /// True if a failed run counts as a result of the study, which is not reported as an error.
   bool keeps_failures = false;
 };
 
@@ -81,14 +82,28 @@ struct BodyResult {
   bool unfinished() const;
 };
 
+/// The program and the machine that have computed a run. Results of equal cases are equal bit for
+/// bit if version, commit and kernels are equal.
+struct Origin {
+  std::string version, commit;  ///< Version of Flexmorph, and commit of its sources.
+  std::string processor;        ///< Name of the processor.
+  std::string kernels;          ///< Kernels of OpenBLAS, and widest vectors of Flexmorph.
+
+  bool operator==(const Origin&) const = default;
+  /// Returns the origin as text.
+  std::string words() const;
+};
+
 /// The results of a run, read from its run folder.
 struct VariantResult {
   std::string name, directory;  ///< Name of the variant, and path of its run folder.
 
   /// Status: "done", "done, not usable", "failed", "interrupted", "running" (a process still writes
-  /// into the folder), "killed" (the status is "running", but the process has ended), "missing".
+  /// into the folder), "killed" (the status is "running", but the process has ended), "missing",
+  /// "another case" (see collected_row()).
   std::string status = "missing";
 
+  Origin origin;        ///< Program and machine of the run.
   std::string message;  ///< Reason of a failure.
   Ending ending;        ///< End of the process; for a run of an earlier study only its exit code.
 
@@ -131,21 +146,19 @@ void check_variants(const StudyOptions& options, std::span<const Variant> varian
 
 /// The result of run_variants().
 struct StudyOutcome {
-  int exit_code = 0;                   ///< Exit code: 0; 3 if a run failed; 4 if interrupted.
-  std::vector<VariantResult> results;  ///< Results of all variants.
+  int exit_code = 0;  ///< Exit code: 0; 3 if a run failed; 4 if runs are missing or interrupted.
+  std::vector<VariantResult> results;  ///< Results of all variants; none if lines were printed.
 };
 
-/// Runs the variants that are not finished yet. A variant is finished if the status of its folder
-/// is done and the case in the folder is identical. If the study is interrupted, the current runs
-/// are interrupted too and keep their results so far.
+/// Runs the variants that are not finished yet, where StudyOptions::dispatch says. A variant is
+/// finished if its run is complete or has failed (exit codes 0, 3 and 5) and the case in its folder
+/// is identical. If the study is interrupted, the current runs are interrupted too and keep their
+/// results so far. Writes rows.csv into the folder of the study (write_rows()). If the study only
+/// prints command lines, nothing is run.
 /// @param changed  called with the results so far, after the end of every run and at the end
 /// @throws Error (input) when the folder cannot be written.
 StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
                           const std::function<void(std::span<const VariantResult>)>& changed);
-
-/// Runs one variant in its folder, unless it is finished.
-/// @return exit code of the run
-int run_variant(const StudyOptions& options, const Variant& variant);
 
 /// Returns the path of the run folder of a variant.
 std::string folder_of(const StudyOptions& options, const Variant& variant);

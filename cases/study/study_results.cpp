@@ -120,6 +120,10 @@ void read_run(const std::string& text, VariantResult& out) {
     throw Error::input(out.directory + "/run.json: this file is not the result of a run");
   out.status = run.value("status", "missing");
   out.message = run.value("message", "");
+  out.origin = {run.value("version", ""), run.value("commit", ""), run.value("processor", ""),
+                run.value("blas_kernel", "")};
+  if (const std::string vectors = run.value("vectors", ""); !vectors.empty())
+    out.origin.kernels += " " + vectors;
   for (const nlohmann::json& each : run.value("warnings", nlohmann::json::array()))
     if (each.is_string()) out.warnings.push_back(each);
   out.seconds_cpu = number(run, "seconds_cpu");
@@ -130,6 +134,7 @@ void read_run(const std::string& text, VariantResult& out) {
                                : (kind == "defect"  ? 1
                                   : kind == "input" ? 2
                                                     : 3);
+  out.ending.over_time = kind == "limit";
   for (const nlohmann::json& r : run.value("results", nlohmann::json::array()))
     out.bodies.push_back(read_body(r));
   if (!out.bodies.empty()) read_history(out.directory + "/history.csv", out.bodies);

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <optional>
+#include <tuple>
 
 #include "cases/check/ready.h"
 #include "cases/run/run.h"
 #include "cases/scene/scene.h"
+#include "cases/study/rows.h"
 #include "cases/study/study_page.h"
 #include "cases/study/sweep_motion.h"
 #include "cases/study/sweep_plan.h"
@@ -85,7 +88,8 @@ void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
   io::CsvWriter csv(stem + ".csv", rows[0]);
   for (size_t r = 1; r < rows.size(); ++r)
     csv.row(std::vector<io::Cell>(rows[r].begin(), rows[r].end()));
-  io::write_file(stem + ".md", "# " + sweep.case_name + "\n\n" + io::markdown_table(rows));
+  io::write_file(stem + ".md",
+                 "# " + sweep.case_name + "\n\n" + io::markdown_table(rows) + rows_note(runs));
   const io::Figure figure = motion_figure(sweep.case_name, motions, sweep.reference),
                    ends = ends_figure(sweep, motions);
   io::write_file(stem + ".svg", io::plot_svg(figure));
@@ -95,6 +99,7 @@ void write_motions(const Sweep& sweep, std::span<const VariantResult> runs,
   page.summary = rows;
   page.rows = {{"variant", "status"}};
   for (const VariantResult& run : runs) page.rows.push_back({run.name, run.words()});
+  page.notes = {rows_note(runs)};
   page.plots = {{"motions", figure}, {"ends", ends}};
   write_study_page(page, runs, stem + ".html");
 }
@@ -171,18 +176,26 @@ std::vector<Variant> combinations(const std::vector<Varied>& varied) {
       throw Error::input("sweep: the number of variants is at most " +
                          std::to_string(kMaxVariants));
   }
+  // The names and the overrides of rows do not depend on the order of the keys, so that a study can
+  // be called with another order.
+  std::vector<size_t> strides(varied.size(), 1), order(varied.size());
+  for (size_t i = varied.size(); i-- > 1;) strides[i - 1] = strides[i] * varied[i].values.size();
+  std::iota(order.begin(), order.end(), 0);
+  const auto rank = [&](size_t i) {
+    const std::string& key = varied[i].key;
+    return std::tuple(key != "case", last_part(key), key);
+  };
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return rank(a) < rank(b); });
   std::vector<Variant> out;
   for (size_t k = 0; k < count; ++k) {
     Variant v;
-    size_t stride = count;
-    for (size_t i = 0; i < varied.size(); ++i) {
-      stride /= varied[i].values.size();
-      const std::string& value = varied[i].values[k / stride % varied[i].values.size()];
+    for (const size_t i : order) {
+      const std::string& value = varied[i].values[k / strides[i] % varied[i].values.size()];
       if (varied[i].key == "case")
         v.case_name = value;
       else
         v.overrides.push_back(varied[i].key + "=" + value);
-      if (i > 0) v.name += ",";
+      if (!v.name.empty()) v.name += ",";
       v.name.append(last_part(varied[i].key)).append("=").append(plain(value));
     }
     for (const Variant& other : out)
@@ -198,29 +211,14 @@ int sweep_case(const SweepOptions& options) {
   sweep.variants = combinations(sweep.varied);
   StudyOptions study = options.study;
   sweep.case_name = study.case_name;
-  const int count = static_cast<int>(sweep.variants.size());
-  if (options.index < 0 || options.index > count)
-    throw Error::input("sweep: --index " + std::to_string(options.index) +
-                       ": the index of a variant is 1 to " + std::to_string(count));
-  if (options.list) {
-    for (int k = 0; k < count; ++k) {
-      const Variant& one = sweep.variants[static_cast<size_t>(k)];
-      std::string line = std::to_string(k + 1);
-      if (!one.case_name.empty()) line += " case=" + one.case_name;
-      for (const std::string& each : one.overrides) line += " " + each;
-      print_text(line);
-    }
-    return 0;
-  }
   if (study.directory.empty())
     study.directory =
         "runs/sweep_" + std::filesystem::path(find_case(study.case_name)).stem().string();
-  if (options.index > 0) {
-    const Variant& one = sweep.variants[static_cast<size_t>(options.index - 1)];
-    check_variants(study, {&one, 1});
-    return run_variant(study, one);
+  if (study.dispatch.prints()) {
+    check_variants(study, sweep.variants);
+    return run_variants(study, sweep.variants, {}).exit_code;
   }
-  check_variants(study, sweep.variants);
+  if (!study.dispatch.collect) check_variants(study, sweep.variants);
   sweep.table.goals = goals_of(study, sweep.variants);
   sweep.table.names = {"variant"};
   for (const Varied& v : sweep.varied) sweep.table.names.push_back(v.key);
@@ -238,7 +236,8 @@ int sweep_case(const SweepOptions& options) {
   print_table(summary_of(sweep, outcome.results), "sweep.md");
   print_text(warnings_note(outcome.results));
   print_text(convergence_note(outcome.results));
-  print_text(study.directory + ": sweep.html, sweep.md, sweep.csv, sweep.svg\n");
+  print_text(rows_note(outcome.results));
+  print_text(study.directory + ": sweep.html, sweep.md, sweep.csv, sweep.svg, rows.csv\n");
   return outcome.exit_code;
 }
 

@@ -8,8 +8,6 @@ namespace flexmorph::cases {
 struct SweepOptions {
   StudyOptions study;             ///< Options of the study.
   std::vector<std::string> vary;  ///< Varied keys with their values, "KEY=V1,V2,...".
-  int index = 0;                  ///< Number of the only variant to run, from 1; 0 means all.
-  bool list = false;              ///< True if the variants are printed and not run.
   std::string reference;          ///< CSV file with columns of motion.csv to plot; or empty.
 };
 
@@ -25,7 +23,8 @@ struct Varied {
 Varied read_varied(const std::string& text);
 
 /// Returns all combinations of the values; the value of the last key changes fastest. The names of
-/// the variants consist of the last components of the keys and of the values.
+/// the variants consist of the last components of the keys, in alphabetical order, and of the
+/// values.
 /// @throws Error (input) for no key, a repeated key, or too many combinations.
 std::vector<Variant> combinations(const std::vector<Varied>& varied);
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "cases/study/rows.h"
 #include "cases/study/study_page.h"
 #include "cases/study/sweep_plan.h"
 #include "io/files.h"
@@ -157,11 +158,11 @@ void write_designs(const Sweep& sweep, std::span<const VariantResult> runs,
       "crisp design.";
   const std::vector<std::vector<std::string>> rows = result_rows(sweep.table, runs);
   io::write_file(stem + ".md", "# " + sweep.case_name + "\n\n" + io::markdown_table(rows) + "\n" +
-                                   note + "\n" + convergence_note(runs));
+                                   note + "\n" + convergence_note(runs) + rows_note(runs));
   io::write_file(stem + ".svg", sheet_of(sweep, runs));
   StudyPage page;
   page.title = sweep.case_name + ": sweep";
-  page.notes = {note};
+  page.notes = {note, rows_note(runs)};
   page.rows = rows;
   page.plots = {{"convergence", histories_of(sweep, runs)}};
   write_study_page(page, runs, stem + ".html");

@@ -22,7 +22,8 @@ std::string header_html(const Page& page) {
   std::string out = "<header>\n<h1>" + escaped(page.title) + "</h1>\n<p><span class=\"status " +
                     (page.good ? "good" : "bad") + "\">" + escaped(page.status) + "</span></p>\n";
   if (!page.facts.empty()) out += facts_html(page.facts);
-  for (const std::string& each : page.notes) out += paragraph(each);
+  for (const std::string& each : page.notes)
+    if (!each.empty()) out += paragraph(each);
   for (const std::string& each : page.warnings)
     out += "<p class=\"warning\"><strong>Warning</strong> " + explained(each) + "</p>\n";
   out += "<nav>";

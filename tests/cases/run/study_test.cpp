@@ -207,24 +207,6 @@ TEST(Sweep, PutsCasesAndDeflectionsOnOnePage) {
   EXPECT_EQ(lines_with(contents_of(folder + "/sweep.svg"), "tip deflection [m]"), 2U);
 }
 
-TEST(Sweep, RunsOneByItsIndexAndListsThem) {
-  const Scratch scratch;
-  const std::string folder = scratch / "sweep";
-  const Words vary = {"--vary", "optimizer.max_iterations=3,5"};
-  Words words = vary;
-  words.push_back("--list");
-  EXPECT_EQ(test::flexmorph(scratch, small("sweep", folder, words)).out,
-            "1 optimizer.max_iterations=3\n2 optimizer.max_iterations=5\n");
-  EXPECT_FALSE(std::filesystem::exists(folder));
-  words = vary;
-  words.insert(words.end(), {"--index", "2"});
-  EXPECT_EQ(test::flexmorph(scratch, small("sweep", folder, words)).code, 0);
-  EXPECT_TRUE(std::filesystem::exists(folder + "/max_iterations=5/run.json"));
-  EXPECT_FALSE(std::filesystem::exists(folder + "/max_iterations=3"));
-  words.back() = "3";
-  EXPECT_EQ(test::flexmorph(scratch, small("sweep", folder, words)).code, 2);
-}
-
 TEST(Sweep, RefusesABadValueBeforeAnythingIsWritten) {
   const Scratch scratch;
   const std::string folder = scratch / "sweep";
