@@ -1,9 +1,9 @@
 #!/bin/bash
 # tests/hosts.sh [PROGRAM] : runs a sweep of 24 rows on two machines without a shared disk and on this
 # one. The machines are ssh servers on other ports of the loopback address, each with its own root,
-# home and processes. On the way two rows are killed, and one machine stops. The same command is
-# called again until the study is complete. Its table has to be that of a study on this machine alone,
-# apart from times.
+# home and processes. On the way two rows are killed, one machine stops, and the study is interrupted.
+# The same command is called again until the study is complete. Its table has to be that of a study
+# on this machine alone, apart from times.
 #
 # It needs root, ssh and sshd, GNU parallel, rsync and unshare; without them it is skipped (exit code
 # 77). All files are in a temporary folder ($TMPDIR, or /tmp). PROGRAM is build/cases/flexmorph
@@ -84,26 +84,21 @@ printf '1/%s\n' "$(login "$port1")" "$(login "$port2")" : >"$work/machines"
 mkdir "$work/here" "$work/alone"
 cp "$root/cases/plate_pendulum.toml" "$root/cases/plate_pendulum_exudyn.csv" "$work/here"
 cp "$root/cases/plate_pendulum.toml" "$root/cases/plate_pendulum_exudyn.csv" "$work/alone"
-words=(sweep plate_pendulum.toml --set 'body.elements=[4, 4]' --set time.end=0.2 --set expect=
+words=(sweep plate_pendulum.toml --set 'body.elements=[4, 4]' --set time.end=0.5 --set expect=
   --set output.vtk=false --vary body.thickness=0.008,0.009,0.01,0.011,0.012,0.014
   --vary body.youngs_modulus=8e6,1e7,1.2e7,1.5e7 -o "$study")
-on_machines() {
-  (cd "$work/here" && "$program" "${words[@]}" --hosts "$work/machines" --program "$program")
+on_machines() {  # in a process of its own
+  cd "$work/here"
+  exec "$program" "${words[@]}" --hosts "$work/machines" --program "$program"
 }
 # runs : numbers of the processes that compute rows of this study
-runs() {
-  local stat pid
-  for stat in /proc/[0-9]*/cmdline; do
-    pid=${stat#/proc/} pid=${pid%/cmdline}
-    if tr '\0' ' ' <"$stat" 2>/dev/null | grep -q "^[^ ]*flexmorph run .*-o $study/"; then echo "$pid"; fi
-  done
-}
+runs() { pgrep -f "^[^ ]*flexmorph run .*-o $study/" || true; }
 
-echo "first call: two rows are killed, and the second machine stops"
+echo "first call: two rows are killed, the second machine stops, and the call is interrupted"
 on_machines >"$work/first.out" 2>&1 &
 call=$!
 killed=0
-for _ in $(seq 600); do
+for _ in $(seq 1200); do
   kill -0 "$call" 2>/dev/null || break
   ended=$(grep -c '^[0-9]*/24 ' "$work/first.out" || true)
   if [ "$killed" -lt 2 ] && [ "$ended" -ge $((3 * killed + 2)) ]; then
@@ -111,19 +106,21 @@ for _ in $(seq 600); do
     if [ -n "$pid" ] && kill -KILL "$pid"; then killed=$((killed + 1)) && echo "killed $pid"; fi
   elif [ "$killed" = 2 ] && [ "$ended" -ge 9 ]; then
     kill -KILL "${machines[1]}" && killed=3 && echo "the second machine has stopped"
+  elif [ "$killed" = 3 ] && [ "$ended" -ge 14 ]; then
+    kill -TERM "$call" && killed=4
   fi
-  sleep 0.2
+  sleep 0.1
 done
 code=0
 wait "$call" || code=$?
 cat "$work/first.out"
 echo "first call: exit code $code"
-[ "$killed" = 3 ] || { echo "the rows ended before they were killed" && exit 1; }
+[ "$killed" = 4 ] || { echo "the rows ended before they were killed" && exit 1; }
 calls=1
 while [ "$code" = 4 ] && [ "$calls" -lt 4 ]; do
   code=0
   calls=$((calls + 1))
-  on_machines >"$work/call$calls.out" 2>&1 || code=$?
+  (on_machines) >"$work/call$calls.out" 2>&1 || code=$?
   cat "$work/call$calls.out"
   echo "call $calls: exit code $code"
 done
