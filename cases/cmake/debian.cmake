@@ -1,5 +1,6 @@
 # Debian packages of the components (install.cmake), made by cases/cmake/packages.sh:
-# flexmorph (program), libflexmorph0.1 (library), libflexmorph-dev (development).
+# flexmorph (program), libflexmorph0.1 (library), libflexmorph-dev (development), and
+# python3-flexmorph (python) where the Python package is built.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME flexmorph)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -18,6 +19,9 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_ALL program library development)
+if(TARGET flexmorph_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
@@ -46,6 +50,15 @@ flexmorph_deb(library libflexmorph${soversion} libs
               "Shared library for topology optimization of flexible mechanisms.")
 flexmorph_deb(development libflexmorph-dev libdevel
               "Headers, static libraries, examples and files for find_package of CMake.")
+if(TARGET flexmorph_python)
+  flexmorph_deb(python python3-flexmorph python
+                "Python package for topology optimization of flexible mechanisms.")
+  # The compiled module belongs to one version of Python. The shipped cases are in flexmorph.
+  string(REGEX REPLACE ".*[.]" "" minor "${FLEXMORPH_PYTHON_VERSION}")
+  math(EXPR next "${minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-numpy, flexmorph (= ${PROJECT_VERSION})")
+endif()
 file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/triggers)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS

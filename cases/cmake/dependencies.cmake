@@ -64,7 +64,7 @@ flexmorph_library(LIBXML 2.9 LIBXML_FOUND)
 # SuiteSparse 5 has neither CMake nor pkg-config files.
 find_path(SUITESPARSE_INCLUDE_DIR umfpack.h PATH_SUFFIXES suitesparse)
 set(SUITESPARSE_FOUND TRUE)
-add_library(SuiteSparse::SuiteSparse INTERFACE IMPORTED)
+add_library(SuiteSparse::SuiteSparse INTERFACE IMPORTED ${flexmorph_scope})
 foreach(library cholmod umfpack klu amd colamd suitesparseconfig)
   find_library(SUITESPARSE_${library} ${library})
   if(SUITESPARSE_INCLUDE_DIR AND SUITESPARSE_${library})
@@ -89,7 +89,7 @@ flexmorph_library(SUITESPARSE 5.12 SUITESPARSE_FOUND)
 # and all libraries.
 find_path(OCCT_INCLUDE_DIR STEPControl_Writer.hxx PATH_SUFFIXES opencascade)
 set(OCCT_FOUND TRUE)
-add_library(OpenCASCADE::step INTERFACE IMPORTED)
+add_library(OpenCASCADE::step INTERFACE IMPORTED ${flexmorph_scope})
 # Version 7.8 has TKDESTEP where earlier ones have TKSTEP and TKSTEPBase.
 find_library(OCCT_step NAMES TKDESTEP TKSTEP)
 find_library(OCCT_step_base NAMES TKDESTEP TKSTEPBase)

@@ -56,6 +56,7 @@ endif()
 # library but Eigen's headers.
 list(TRANSFORM flexmorph_static REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
 add_library(flexmorph_shared SHARED ${objects})
+add_library(flexmorph::flexmorph ALIAS flexmorph_shared)
 target_link_libraries(flexmorph_shared PUBLIC flexmorph::options Eigen3::Eigen
                       PRIVATE $<BUILD_INTERFACE:flexmorph_cases>)
 set_target_properties(

@@ -5,7 +5,7 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1-$root/build-packages}
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DFLEXMORPH_TESTS=OFF \
-  -DCMAKE_INSTALL_PREFIX=/usr
+  -DCMAKE_INSTALL_PREFIX=/usr -DFLEXMORPH_PYTHON_DIR=lib/python3/dist-packages
 cmake --build "$build"
 (cd "$build" && cpack)
 ls -l "$build"/*.deb
