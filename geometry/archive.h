@@ -16,11 +16,11 @@ namespace flexmorph {
 /// An archive (checkpoint) that saves or restores the variables with which a computation continues
 /// bit for bit. A class lists its variables once, and one function both saves and restores them:
 ///
-///   void remember(Archive& m, Path& p) { m(p.start, p.points); }
+///   void archive(Archive& m, Path& p) { m(p.start, p.points); }
 ///
 /// Numbers, enumerations and plain structs are saved as their bytes, in the byte order of the
 /// machine; strings, vectors, optional values and matrices as their size and contents; all other
-/// types by their member function remember(Archive&), or by a function remember(Archive&, T&) in
+/// types by their member function archive(Archive&), or by a function archive(Archive&, T&) in
 /// their namespace.
 class Archive {
  public:

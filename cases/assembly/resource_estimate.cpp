@@ -305,7 +305,7 @@ void require_disk(const Scene& scene, const Machine& machine) {
 std::string out_of_memory_text(const ResourceEstimate& resource_estimate) {
   return "the memory is exhausted: the estimated memory of the run is " +
          bytes_text(resource_estimate.memory_bytes()) +
-         " (within a factor of two), and the available memory is " +
+         " (within a factor of 1.5), and the available memory is " +
          bytes_text(this_machine().memory);
 }
 

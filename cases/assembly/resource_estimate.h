@@ -33,8 +33,8 @@ struct ResourceEstimate {
   double disk_bytes() const;
 };
 
-/// Returns the estimated size of a run. Memory and disk space are within a factor of two of the
-/// measured ones for the shipped cases, also on finer meshes
+/// Returns the estimated size of a run. Memory is within a factor of 1.5 and disk space within a
+/// factor of three of the measured ones for the shipped cases, also on finer meshes
 /// (tests/cases/scene/resource_estimate_test.cpp). Files of designs are counted for all permitted
 /// iterations, files of arc-length paths for all permitted equilibria.
 ResourceEstimate estimate_resources(const Scene& scene);

@@ -77,7 +77,8 @@ std::vector<AttachedForce> joint_forces(Workspace& model, const State& x, const 
 /// @param masses   Point masses; they must lie on nodes of the grid.
 /// @param forces   Forces of joints and loads; they must act on nodes of the grid.
 /// @param gravity  Acceleration of gravity in the axes of the world [m/s²], or empty.
-/// @throws Error (input) if a mass or a force is not at a node; Error (numerical) if the thermal
+/// @throws Error (input) if a mass or a force is not at a node, or a force along an edge not at a
+///         column of nodes; Error (numerical) if the thermal
 ///         stretch s is not positive.
 ///
 /// Source: P (31), (32); fem/README.md, Equivalent static loads.
