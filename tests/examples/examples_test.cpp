@@ -1,5 +1,5 @@
-// Shows that the examples of cases/docs/extending.md work: an element fills its plate, the energy of
-// a term agrees with a hand calculation, the constraint of a joint and its rate follow from the
+// Shows that the examples of cases/docs/extending.md work: an element fills its plate, the energy
+// of a term agrees with a hand calculation, the constraint of a joint and its rate follow from the
 // angles, an optimizer finds the nearest point of a box, a refinement series reads its case. The
 // example of a response is tested in optim/mmc_responses_test.cpp.
 #include <gtest/gtest.h>
