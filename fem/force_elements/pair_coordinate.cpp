@@ -69,7 +69,7 @@ PairCoordinate angle_between(const Values& y, double near) {
 void add_along(const PairCoordinate& c, const Values& rate, const CoordinateForce& n,
                PairForce& out) {
   out.s += n.total * c.z_y;
-  out.reservoirs += n.elastic * c.z_y;
+  out.conservative += n.elastic * c.z_y;
   out.s_y += c.z_y * (n.by_z * c.z_y + n.by_rate * (c.z_yy * rate)).transpose() + n.total * c.z_yy;
   out.s_rate += n.by_rate * c.z_y * c.z_y.transpose();
 }

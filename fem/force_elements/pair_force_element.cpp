@@ -72,7 +72,7 @@ double PairForceElement::power(const State& x) const {
   pair_.evaluate(x.t, x.q, x.v);
   PairForce force;
   fill(x, pair_.y(), pair_.rate(), force);
-  return force.s.dot(pair_.y_t()) - (force.s - force.reservoirs).dot(pair_.rate());
+  return force.s.dot(pair_.y_t()) - (force.s - force.conservative).dot(pair_.rate());
 }
 
 }  // namespace flexmorph::fem

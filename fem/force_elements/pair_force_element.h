@@ -10,7 +10,7 @@ struct PairForce {
   using Values = MarkerPair::Values;
   /// Force s with the virtual work s · δy, on the left side of M q̈ + F = 0.
   Values s = Values::Zero();
-  Values reservoirs = Values::Zero();  ///< Component of s that is the derivative of an energy.
+  Values conservative = Values::Zero();  ///< Component of s that is the derivative of an energy.
 
   /// Derivatives ∂s/∂y and ∂s/∂ẏ.
   MarkerPair::Square s_y = MarkerPair::Square::Zero(), s_rate = MarkerPair::Square::Zero();
@@ -19,7 +19,7 @@ struct PairForce {
 /// A force element whose force depends on two markers, y = Y(t) q + y₀(t):
 ///
 ///   f = Yᵀ s(y, ẏ),   f_q = Yᵀ (s_y Y + s_ẏ Ẏ),   f_v = Yᵀ s_ẏ Y
-///   power that enters the model: s · y_t - (s - stored) · ẏ
+///   power that enters the model: s · y_t - (s - conservative) · ẏ
 class PairForceElement : public ForceElement {
  public:
   std::string name() const override { return name_; }

@@ -57,7 +57,7 @@ class PointForce final : public LocationLoad, public MeanForceElement {
  private:
   void fill(const State& x, const Values&, const Values&, PairForce& out) const override {
     out.s.segment<2>(kPosition) = -load(x.t);
-    if (is_constant()) out.reservoirs = out.s;
+    if (is_constant()) out.conservative = out.s;
   }
 };
 

@@ -115,7 +115,7 @@ class Spring final : public PairForceElement, public MeanForceElement {
     const Vec2 d = difference(y), d_t = difference(rate);
     const Eigen::Matrix2d one = Eigen::Matrix2d::Identity();
     if (free_length == 0 && c == 0) {  // the direction of the line is not needed
-      out.s = out.reservoirs = of_difference(Vec2(k * d));
+      out.s = out.conservative = of_difference(Vec2(k * d));
       out.s_y = of_difference(Eigen::Matrix2d(k * one));
       return;
     }
@@ -124,7 +124,7 @@ class Spring final : public PairForceElement, public MeanForceElement {
     const Vec2 e = d / l;
     const Eigen::Matrix2d e_d = (one - e * e.transpose()) / l;
     const double pull = k * (l - free_length), rate_of_l = e.dot(d_t);
-    out.reservoirs = of_difference(Vec2(pull * e));
+    out.conservative = of_difference(Vec2(pull * e));
     out.s = of_difference(Vec2((pull + c * rate_of_l) * e));
     out.s_y = of_difference(Eigen::Matrix2d(k * e * e.transpose() + (pull + c * rate_of_l) * e_d +
                                             c * e * (e_d * d_t).transpose()));
@@ -195,7 +195,7 @@ class TorsionSpring final : public PairForceElement, public TurningForceElement 
     phi_yy.block<2, 2>(MarkerPair::kAxisB, MarkerPair::kAxisB) = b.by_ee;
     const double elastic = spring_.stiffness * (angle(x, a, b) - spring_.rest_angle);
     const double moment = elastic + spring_.damping * phi_y.dot(rate);
-    out.reservoirs = elastic * phi_y;
+    out.conservative = elastic * phi_y;
     out.s = moment * phi_y;
     out.s_rate = spring_.damping * phi_y * phi_y.transpose();
     out.s_y = spring_.stiffness * phi_y * phi_y.transpose() + moment * phi_yy +

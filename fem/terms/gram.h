@@ -78,16 +78,6 @@ constexpr int packed(int m) { return m * (m + 1) / 2; }
 /// Returns the number of entries of the full square of a block of m pairs.
 constexpr int square(int m) { return m * m; }
 
-/// Returns the number of entries that store W: of all pairs, or of its four blocks.
-template <int kKinds>
-constexpr int n_reservoirs(Coupling coupling, int (*size)(int)) {
-  using N = Numbering<kKinds>;
-  if (coupling == Coupling::all) return size(N::n_pairs);
-  int n = 0;
-  for (std::size_t c = 0; c < 4; ++c) n += size(N::tables.start[c + 1] - N::tables.start[c]);
-  return n;
-}
-
 /// W of eight different elements.
 template <class V>
 struct Different {
