@@ -14,7 +14,7 @@ struct Dispatch {
   /// Options of sbatch: a script that runs the rows as a job array of Slurm is printed.
   std::optional<std::string> sbatch = {};
 
-  std::string hosts;         ///< File of machines for GNU parallel (--sshloginfile); or empty.
+  std::string hosts = {};    ///< File of machines for GNU parallel (--sshloginfile); or empty.
   bool shared_disk = false;  ///< True if the machines work in this folder, on a shared disk.
   std::string program = "flexmorph";  ///< Command that starts the program on every machine.
 

@@ -171,7 +171,8 @@ TEST(Columns, OfForcesNameTheBody) {
         "type = \"revolute\"\nname = \"pin\"\n" +
             joint,
         "pendulum.toml", {}));
-    for (const ColumnInfo& c : MotionColumns(scene, {}, true).columns())
+    const MotionColumns columns(scene, {}, true);
+    for (const ColumnInfo& c : columns.columns())
       if (c.name == "pin.force_x") return c.meaning;
     return std::string();
   };
