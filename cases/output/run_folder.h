@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <deque>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -58,7 +59,7 @@ class RunFolder {
   /// written.
   std::string lost_frames();
   /// Returns a message about exports that could not be made; empty if all exist.
-  const std::string& missing_exports() const { return missing_; }
+  std::string missing_exports() const;
 
   /// Writes one design iteration: a row of history.csv, and the VTK files that the scene requests.
   void add_iteration(const mmc::IterationReport& report);
@@ -206,8 +207,8 @@ class RunFolder {
     void archive(Archive& memory) { memory(file, time, part); }
   };
   std::vector<Frame> frames_;
-  std::string missing_;
-  int lost_frames_ = 0;  // set by tasks of writer_, like why_lost_
+  std::map<std::string, std::string> missing_;  // by the name of the export: why it is missing
+  int lost_frames_ = 0;                         // set by tasks of writer_, like why_lost_
   std::string why_lost_;
   std::vector<History> histories_;
   std::deque<std::vector<std::string>> old_rows_;    // remaining rows of a continued history

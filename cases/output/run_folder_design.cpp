@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 
 #include "cases/output/run_folder.h"
 #include "cases/results/schema.h"
@@ -124,15 +125,25 @@ void RunFolder::write_design(const mmc::BodyProblem& problem, const mmc::BodyOut
   // An outline that touches itself is no valid solid; the other files contain it nevertheless.
   const std::string name = "design" + stem + ".step";
   const std::string why = io::write_step(folder_.file(name), curves, thickness);
-  if (!why.empty())
-    missing_ += (missing_.empty() ? "" : "; ") + name +
-                " was not written, because OpenCASCADE cannot make a solid of the outline: " + why;
+  missing_.erase(name);
+  if (!why.empty()) {
+    missing_[name] = why;
+    std::filesystem::remove(folder_.file(name));  // the solid of an earlier design
+  }
   if (!scene_.output.plots) return;
   pictures_of(problem.body).result = io::outline_svg(regions, frame, 5);
   pictures_of(problem.body).outline = regions;
   const auto& crisp = outcome.crisp.fractions;
   io::write_png(folder_.file("plots/design" + stem + ".png"), problem.grid,
                 {crisp.data(), static_cast<size_t>(crisp.size())});
+}
+
+std::string RunFolder::missing_exports() const {
+  std::string out;
+  for (const auto& [name, why] : missing_)
+    out += (out.empty() ? "" : "; ") + name +
+           " was not written, because OpenCASCADE cannot make a solid of the outline: " + why;
+  return out;
 }
 
 void RunFolder::keep_outline(const mmc::BodyProblem& problem, const std::string& name) {

@@ -2,6 +2,8 @@
 // the computed doubles bit for bit.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "cases/check/ready.h"
 #include "cases/output/report.h"
 #include "cases/run/motion_run.h"
@@ -105,6 +107,30 @@ TEST(RoundTrip, Design) {
            {"crisp_compliance", outcome.crisp.compliance},
            {"uniform_compliance", outcome.uniform_compliance}})
     EXPECT_EQ(result[key].get<double>(), value) << key;
+}
+
+// A solid that could not be made for the design of an earlier cycle is no longer missing when that
+// of the last cycle exists.
+TEST(RunFolder, MissesTheExportsOfTheLastDesignOnly) {
+  const Scratch scratch;
+  Case c(scratch, "short_beam", {"design.cell=0.1", "output.plots=false"});
+  std::vector<mmc::BodyProblem> problems = build_problems(c.scene);
+  mmc::BodyProblem& problem = problems.front();
+  mmc::BodyOutcome outcome;
+  outcome.crisp.fractions = VectorXd::Zero(problem.grid.n_cells());
+  const auto has_solid = [&] { return std::filesystem::exists(c.folder.path() + "/design.step"); };
+  const Region crossed{{{0.0, 0.0}, {1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}}, {}};
+  problem.part = std::vector<Region>{crossed};  // its sides cross: no solid
+  c.folder.write_design(problem, outcome);
+  EXPECT_NE(c.folder.missing_exports().find("design.step"), std::string::npos);
+  EXPECT_FALSE(has_solid());
+  problem.part = std::vector<Region>{{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}, {}}};
+  c.folder.write_design(problem, outcome);
+  EXPECT_EQ(c.folder.missing_exports(), "");
+  EXPECT_TRUE(has_solid());
+  problem.part = std::vector<Region>{crossed};
+  c.folder.write_design(problem, outcome);
+  EXPECT_FALSE(has_solid());  // it would be the solid of another design
 }
 
 }  // namespace
