@@ -17,13 +17,7 @@ constexpr double kWidth = 1000;  // width of a picture in units of its view box
 
 std::string tenths(double value) { return to_text(std::round(10 * value) / 10); }
 
-/// Returns the position of a point in the view: to the right, up, and towards the viewer.
-Vec3 seen(const double* p) {
-  const double along = std::cos(kAzimuth) * p[0] + std::sin(kAzimuth) * p[1];
-  return {-std::sin(kAzimuth) * p[0] + std::cos(kAzimuth) * p[1],
-          -std::sin(kElevation) * along + std::cos(kElevation) * p[2],
-          std::cos(kElevation) * along + std::sin(kElevation) * p[2]};
-}
+Vec3 seen(const double* p) { return seen_from_above({p[0], p[1], p[2]}); }
 
 /// The view of all snapshots, so that they can be compared.
 struct View {
@@ -88,6 +82,13 @@ std::string picture(const SurfaceFrame& frame, const View& view) {
 }
 
 }  // namespace
+
+Vec3 seen_from_above(const Vec3& p) {
+  const double along = std::cos(kAzimuth) * p[0] + std::sin(kAzimuth) * p[1];
+  return {-std::sin(kAzimuth) * p[0] + std::cos(kAzimuth) * p[1],
+          -std::sin(kElevation) * along + std::cos(kElevation) * p[2],
+          std::cos(kElevation) * along + std::sin(kElevation) * p[2]};
+}
 
 std::string surfaces_svg(const std::string& title, const std::vector<SurfaceFrame>& frames,
                          int columns) {

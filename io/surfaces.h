@@ -3,10 +3,15 @@
 #include <string>
 #include <vector>
 
+#include "geometry/base.h"
 #include "io/vtk.h"
 
 /// Pictures of deformed plates in space.
 namespace flexmorph::io {
+
+/// Returns the position of a point in the view of pictures in space: coordinates to the right,
+/// upwards, and towards the viewer, who looks from above.
+Vec3 seen_from_above(const Vec3& point);
 
 /// A snapshot of a plate.
 struct SurfaceFrame {

@@ -11,6 +11,7 @@
 #include "fem/dynamics/mesh_changes/moving_root.h"
 #include "fem/dynamics/starts/driven_frame.h"
 #include "fem/dynamics/starts/reference_pose.h"
+#include "io/surfaces.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -41,6 +42,16 @@ bool has_held_root(const Scene& scene, const std::string& body) {
   return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& j) {
     return j.holds_frame() && j.body == body && j.edge == "root";
   });
+}
+
+/// Returns the place of a point in the plane of the animation.
+Vec2 in_picture(const Scene& scene, const Vec3& point) {
+  return (scene.in_space() ? io::seen_from_above(point) : point).head<2>();
+}
+
+/// Returns the time of the drives at a step; there is none in a path of equilibria.
+double drive_time(const Scene& scene, const StepRecord& step) {
+  return scene.statics ? 0 : step.abscissa;
 }
 
 /// The anchors of the drawn joints and springs of a scene.
@@ -109,6 +120,7 @@ void AnimationWriter::begin() {
     grid.across = body.width > 0 && body.row->across ? 2 : 0;
     grid.width = body.width;
   }
+  const bool in_plane = !scene.in_space();
   for (const RigidBody& body : scene.rigid_bodies) {
     AnimatedBody& rigid = out_.bodies.emplace_back();
     rigid.name = body.name;
@@ -121,6 +133,7 @@ void AnimationWriter::begin() {
     rigid.anchors = anchors_on(body.name);
   }
   for (const Hub& hub : scene.hubs) {
+    if (!in_plane) break;
     AnimatedBody& disc = out_.bodies.emplace_back();
     disc.name = hub.name;
     disc.kind = AnimatedBody::Kind::hub;
@@ -132,6 +145,9 @@ void AnimationWriter::begin() {
     disc.kind = AnimatedBody::Kind::mass;
     disc.width = drawn_radius(scene, mass);
   }
+  for (const Observe& point : scene.observed)
+    out_.marks.push_back({point.body + "." + point.name, "observe", false, false, {}});
+  if (!in_plane) return;
   for (const DrawnAnchor& each : drawn_joints(scene)) {
     const Joint& joint = *each.joint;
     const bool ground = !joint.between_bodies() || joint.a.on_ground() || joint.b.on_ground();
@@ -141,19 +157,19 @@ void AnimationWriter::begin() {
   for (const Joint& joint : scene.joints)
     if (is_sleeve(joint))
       out_.marks.push_back({joint.named ? joint.name : "", joint.row->name, true, false, {}});
-  for (const Observe& point : scene.observed)
-    out_.marks.push_back({point.body + "." + point.name, "observe", false, false, {}});
   for (const Spring& spring : scene.springs)
     out_.springs.push_back({spring.named ? spring.name : "", spring.row->name, {}});
 }
 
 void AnimationWriter::add(const StepRecord& step) {
   const Scene& scene = shapes_.scene();
-  if (scene.in_space()) return;
   const auto shown = static_cast<double>(out_.time.size());
-  if (shown >= n_ || step.abscissa < shown / (n_ - 1) * scene.time.end - 1e-9) return;
+  const bool is_motion = !scene.statics;
+  if (is_motion && (shown >= n_ || step.abscissa < shown / (n_ - 1) * scene.time.end - 1e-9))
+    return;
   if (out_.time.empty()) begin();
   out_.time.push_back(step.abscissa);
+  if (!is_motion) out_.factor.push_back(step.row[1]);
   add_bodies(step);
   add_marks(step);
 }
@@ -196,20 +212,54 @@ void AnimationWriter::add_grid(const StepRecord& step, size_t body, AnimatedBody
   if (!drawn.flow && !drawn.has_eulerian_lines()) out.shape = std::move(shape);
 }
 
+void AnimationWriter::add_grid_in_space(const StepRecord& step, size_t body,
+                                        AnimatedBody& out) const {
+  const Body& drawn = shapes_.scene().bodies[body];
+  const fem::Body& model = step.model.body(drawn.name);
+  const std::vector<double> lines = model.element->lines()[0];
+  const double root = lines.front(), end = lines.back();
+  std::vector<double> from, to;
+  for (int i = 0; i <= out.along; ++i)
+    for (int j = 0; j <= out.across; ++j) {
+      const Vec2 material(i == out.along ? end : root + (end - root) * i / out.along,
+                          out.across == 0 ? 0 : drawn.low() + drawn.width * j / out.across);
+      const Vec3 before = shapes_.pose_of(body).location(material),
+                 now = fem::point_position(model, step.x, material);
+      from.insert(from.end(), before.begin(), before.end());
+      to.insert(to.end(), now.begin(), now.end());
+    }
+  const RigidFit fit = rigid_fit(3, from, to);
+  for (size_t k = 0; k < from.size(); k += 3) {
+    const Vec3 before(from[k], from[k + 1], from[k + 2]), now(to[k], to[k + 1], to[k + 2]);
+    const Vec3 point = io::seen_from_above(now),
+               rigid = io::seen_from_above(fit.rotation * before + fit.translation);
+    out.points.insert(out.points.end(), {point.x(), point.y()});
+    out.rigid.insert(out.rigid.end(), {rigid.x(), rigid.y()});
+  }
+  out.roots.push_back(root);
+  out.largest = end;
+}
+
 void AnimationWriter::add_bodies(const StepRecord& step) {
   const Scene& scene = shapes_.scene();
   size_t next = 0;
-  for (size_t i = 0; i < scene.bodies.size(); ++i) add_grid(step, i, out_.bodies[next++]);
+  for (size_t i = 0; i < scene.bodies.size(); ++i)
+    if (scene.in_space())
+      add_grid_in_space(step, i, out_.bodies[next++]);
+    else
+      add_grid(step, i, out_.bodies[next++]);
   for (const RigidBody& body : scene.rigid_bodies)
     append(out_.bodies[next++].poses, fem::frame_of(step.model.body(body.name), step.x));
   for (const Hub& hub : scene.hubs) {
+    if (scene.in_space()) break;
     Joint held;  // stands for a joint that is welded to the hub
     held.to = hub.name;
-    append(out_.bodies[next++].poses, hub_drive(scene, held)(step.abscissa));
+    append(out_.bodies[next++].poses, hub_drive(scene, held)(drive_time(scene, step)));
   }
   for (const PointMass& mass : scene.point_masses) {
     fem::FrameMotion frame;
-    frame.origin = fem::point_position(step.model.body(mass.body), step.x, mass.point).head<2>();
+    frame.origin =
+        in_picture(scene, fem::point_position(step.model.body(mass.body), step.x, mass.point));
     append(out_.bodies[next++].poses, frame);
   }
 }
@@ -220,16 +270,17 @@ void AnimationWriter::add_marks(const StepRecord& step) {
   const auto location = [&](const Anchor& at) {
     return step.model.location_motion({at.body, at.point, at.angle, {}}, step.x);
   };
+  for (const Observe& point : scene.observed) {
+    const Vec3 p = fem::point_position(step.model.body(point.body), step.x, point.point);
+    append(out_.marks[next++].at, in_picture(scene, p), 0);
+  }
+  if (scene.in_space()) return;
   for (const DrawnAnchor& each : drawn_joints(scene)) {
     const fem::LocationMotion at = location(each.at);
     append(out_.marks[next++].at, at.position, angle_of(at.axis));
   }
   for (const Joint& joint : scene.joints)
     if (is_sleeve(joint)) append(out_.marks[next++].at, joint.position, joint.angle);
-  for (const Observe& point : scene.observed) {
-    const Vec3 p = fem::point_position(step.model.body(point.body), step.x, point.point);
-    append(out_.marks[next++].at, p.head<2>(), 0);
-  }
   for (size_t i = 0; i < scene.springs.size(); ++i) {
     const Spring& spring = scene.springs[i];
     const Vec2 a = location(completed(scene, spring.a, spring.b)).position,

@@ -52,6 +52,8 @@ class RunPage {
     out.sections.push_back(results_section(scene_, design));
     out.sections.push_back(comparison_section(result_));
     out.sections.push_back(loads_section(result_, folder_));
+    if (!design.static_loads.empty() && plots())
+      data_["static_loads"] = static_loads_data(design.problems.front().grid, design.static_loads);
     out.sections.push_back(plots_section());
     out.sections.push_back(motion_section(result_));
     out.sections.push_back(heat_section(scene_));
@@ -124,22 +126,26 @@ class RunPage {
   }
 
   PageSection mechanism_section() {
-    PageSection out{"motion", "Mechanism in motion", ""};
+    PageSection out{
+        "motion", result_.path ? "Deformation along the path of equilibria" : "Mechanism in motion",
+        ""};
     const MotionResults& motions = result_.motions;
-    if (!motions.motion || !plots()) return out;
-    const Animation& animation = motions.motion->animation;
-    if (!animation.time.empty()) {
+    if (!(motions.motion || result_.path) || !plots()) return out;
+    const Animation& animation =
+        motions.motion ? motions.motion->animation : result_.path->animation;
+    const bool moves = animation.time.size() > 1;
+    if (moves) {
       data_["motion"] = animation_data(animation);
       if (motions.uniform && !motions.uniform->animation.time.empty())
         data_["uniform"] = animation_data(motions.uniform->animation);
       out.html = "<div id=\"motion-view\" class=\"plot\">";
     }
-    const std::string shapes = snapshot_plot(*motions.motion);
+    const std::string shapes = motions.motion ? snapshot_plot(*motions.motion) : "";
     if (!shapes.empty()) {
       keep("mechanism", shapes);
       out.html += "<div class=\"static wide\">" + shapes.substr(shapes.find("<svg")) + "</div>";
     }
-    if (!animation.time.empty()) out.html += "</div>\n";
+    if (moves) out.html += "</div>\n";
     return out;
   }
 

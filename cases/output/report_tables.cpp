@@ -137,6 +137,28 @@ PageSection comparison_section(const RunResult& result) {
 
 namespace {
 
+/// Returns a button in whose place the page draws the deformed design under a load.
+std::string deformed_button(const std::string& body, size_t load, double time) {
+  return "<button type=\"button\" class=\"scripted\" data-deformed=\"" + escaped(body) +
+         "\" data-load=\"" + std::to_string(load) + "\" data-at=\"" + io::to_text(time) +
+         "\">deformed</button>";
+}
+
+/// Returns the table of the load cases of a static plate.
+std::string load_case_table(const DesignResult& design) {
+  std::vector<HtmlColumn> columns;
+  for (const auto& q : static_load_quantities()) columns.push_back(column_of(q));
+  columns.push_back({"", "", ""});
+  std::vector<std::vector<std::string>> rows;
+  for (size_t l = 0; l < design.static_loads.size(); ++l) {
+    std::vector<std::string>& row = rows.emplace_back();
+    for (const auto& q : static_load_quantities())
+      row.push_back(escaped(cell_of(q.value(design.static_loads[l]))));
+    row.push_back(deformed_button(design.problems.front().body, l, 0));
+  }
+  return sortable_table(columns, rows);
+}
+
 /// Returns the table of the equivalent static loads of one body.
 std::string load_set_table(const RunFolder::LoadSets& sets, const RunResult& result) {
   const mmc::BodyOutcome* outcome = nullptr;
@@ -156,6 +178,7 @@ std::string load_set_table(const RunFolder::LoadSets& sets, const RunResult& res
       {"largest displacement", "m", "Largest displacement of the exported outline under the load."},
       {"largest stress", "Pa",
        "Largest von Mises stress of the exported outline, away from supports and loads."},
+      {"", "", ""},
       {"", "", ""}};
   std::vector<std::vector<std::string>> rows;
   for (size_t l = 0; l < sets.time.size(); ++l) {
@@ -173,7 +196,8 @@ std::string load_set_table(const RunFolder::LoadSets& sets, const RunResult& res
                ? io::to_text(outline->largest_stresses[l].value, 4)
                : "",
            "<button type=\"button\" class=\"scripted\" data-time=\"" + io::to_text(sets.time[l]) +
-               "\">show</button>"};
+               "\">show</button>",
+           deformed_button(sets.body, l, sets.time[l])};
   }
   return sortable_table(columns, rows);
 }
@@ -195,9 +219,7 @@ std::string worst_load(const RunFolder::LoadSets& sets, const RunResult& result,
 
 PageSection loads_section(const RunResult& result, const RunFolder& folder) {
   PageSection out{"loads", "Loads", ""};
-  if (!result.design.static_loads.empty())
-    out.html += source_table(static_load_quantities(),
-                             std::span<const StaticLoad>(result.design.static_loads));
+  if (!result.design.static_loads.empty()) out.html += load_case_table(result.design);
   const std::vector<RunFolder::LoadSets>& all = folder.load_sets();
   if (!all.empty())
     out.html += paragraph(

@@ -5,7 +5,8 @@
 
 #include "geometry/archive.h"
 
-/// Frames of a motion in the plane, from which the report draws the moving mechanism.
+/// Frames of a motion, from which the report draws the moving mechanism. Bodies in space are
+/// projected onto the plane of the pictures in space, see io::seen_from_above().
 namespace flexmorph::cases {
 
 /// A moving body. Positions are those of the time steps, without interpolation.
@@ -31,10 +32,13 @@ struct AnimatedBody {
   std::vector<double> roots;
   /// Points of the grid in every frame, across first (2 (along + 1) (across + 1) n_frames) [m].
   std::vector<double> points;
+  /// Points of the grid moved with the rigid motion alone, in every frame, of a body in space;
+  /// empty in the plane, where they follow from `poses`.
+  std::vector<double> rigid;
 
   /// Saves or restores the body.
   void archive(Archive& memory) {
-    memory(name, kind, along, across, width, largest, shape, anchors, poses, roots, points);
+    memory(name, kind, along, across, width, largest, shape, anchors, poses, roots, points, rigid);
   }
 };
 
@@ -64,15 +68,17 @@ struct AnimatedSpring {
   void archive(Archive& memory) { memory(name, type, ends); }
 };
 
-/// The frames of a motion: equal spacing in time, as far as the time steps allow.
+/// The frames of a motion, with equal spacing in time as far as the time steps allow, or of a path
+/// of equilibria.
 struct Animation {
-  std::vector<double> time;             ///< Time of every frame (n_frames) [s].
+  std::vector<double> time;  ///< Time of every frame [s]; of a path the number of the equilibrium.
+  std::vector<double> factor;  ///< Load factor of every frame of a path [-]; empty for a motion.
   std::vector<AnimatedBody> bodies;     ///< Bodies in the order in which they are drawn.
   std::vector<AnimatedMark> marks;      ///< Joints and observed points.
   std::vector<AnimatedSpring> springs;  ///< Springs, dampers and end stops.
 
   /// Saves or restores the frames.
-  void archive(Archive& memory) { memory(time, bodies, marks, springs); }
+  void archive(Archive& memory) { memory(time, factor, bodies, marks, springs); }
 };
 
 }  // namespace flexmorph::cases

@@ -60,6 +60,7 @@ Variation variation_of(std::span<const double> time, std::span<const double> val
 struct PathRecord {
   Series table;              ///< Table with the columns of path_columns().
   std::vector<double> arc;   ///< Arc length of the path in scaled displacements (n_rows) [-].
+  Animation animation;       ///< Frames for the animation of the report.
   fem::StaticResult result;  ///< Counts of the solver and last load factor.
   std::vector<std::string> redundant_joints;  ///< Joints whose forces are not unique.
 };

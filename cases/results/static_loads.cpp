@@ -59,10 +59,9 @@ std::vector<StaticLoad> static_loads_of(const Domain& domain, const mmc::BodyPro
       load.largest_stress = verified->largest_stresses[l].value;
     } else {
       load.strain_energy = 0.5 * load.compliance;
-      measure_cells(
-          problem, outcome.crisp.fractions,
-          loads.displacement(crisp.stiffness, crisp.mass, loads.position(static_cast<int>(l))),
-          load);
+      load.displacement =
+          loads.displacement(crisp.stiffness, crisp.mass, loads.position(static_cast<int>(l)));
+      measure_cells(problem, outcome.crisp.fractions, load.displacement, load);
     }
   }
   return out;

@@ -20,6 +20,10 @@ struct StaticLoad {
   double largest_displacement = 0;  ///< Largest displacement, by the model `source` [m].
   double largest_stress = 0;        ///< Largest von Mises stress, by the model `source` [Pa].
   std::string source;               ///< Model of the three results: "outline" or "cells".
+
+  /// Displacements of the nodes of the cells of the crisp design (2 n_nodes) [m]; empty if the
+  /// results come from the outline.
+  VectorXd displacement;
 };
 
 /// Returns the results of all load cases of a static plate, in the order of the domain. The results

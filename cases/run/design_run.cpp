@@ -216,7 +216,12 @@ void DesignRun::design_at_rest() {
   design_.outcomes = {outcome};
   add_unloaded_seconds(outcome);
   const auto write_loads = [&](const VerifiedOutline* outline) {
-    design_.static_loads = static_loads_of(*scene.domain, problem, *loads, outcome, outline);
+    std::vector<StaticLoad> found =
+        static_loads_of(*scene.domain, problem, *loads, outcome, outline);
+    // The displacements of the cells are those of the first call, without the outline.
+    for (size_t l = 0; l < design_.static_loads.size(); ++l)
+      found[l].displacement = std::move(design_.static_loads[l].displacement);
+    design_.static_loads = std::move(found);
     if (run_.folder) run_.folder->write_static_loads(*scene.domain, design_.static_loads);
   };
   write_loads(nullptr);

@@ -1,7 +1,7 @@
 #include "cases/run/path_run.h"
 
 #include "cases/assembly/static_path.h"
-#include "cases/output/motion_frames.h"
+#include "cases/output/animation_writer.h"
 #include "cases/results/failure.h"
 #include "cases/results/motion_columns.h"
 #include "cases/scene/elements/row.h"
@@ -34,6 +34,8 @@ class PathSteps {
     }
     out.table = Series(path_columns(scene));
     writers_.push_back(std::make_unique<SeriesWriter>(out.table));
+    if (scene.output.plots)
+      writers_.push_back(std::make_unique<AnimationWriter>(shapes_, 2, out.animation));
     if (folder == nullptr) return;
     writers_.push_back(std::make_unique<TableWriter>(folder->file("path.csv"), out.table));
     if (scene.output.vtk) writers_.push_back(std::make_unique<FrameWriter>(shapes_, 1, *folder));

@@ -207,10 +207,24 @@ class RunPage(unittest.TestCase):
         self.assertEqual(self.script(values), sorted(up, reverse=True))
 
     def test_a_load_shows_its_time(self):
-        button = self.chrome.find_elements(By.CSS_SELECTOR, "#loads button")[-1]
+        button = self.chrome.find_elements(By.CSS_SELECTOR, "#loads button[data-time]")[-1]
         self.chrome.execute_script("arguments[0].click()", button)
         self.assertAlmostEqual(self.script("page.time"),
                                float(button.get_attribute("data-time")), places=9)
+
+    def test_a_load_draws_its_deformed_design(self):
+        buttons = "document.querySelectorAll('button[data-deformed]')"
+        n = self.script(buttons + ".length")
+        self.assertGreater(n, 1)
+        self.chrome.execute_script(buttons + "[1].click()")
+        self.assertEqual(self.script(buttons + ".length"), n - 1)
+        drawn = self.script("""(() => {
+            const canvas = document.querySelector('.deformed canvas');
+            const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+            return pixels.data.filter((v, k) => k % 4 === 3 && v > 0).length /
+                (canvas.width * canvas.height); })()""")
+        self.assertGreater(drawn, 0.02)
+        self.assertLess(drawn, 0.9)
 
     def test_nothing_is_wider_than_a_phone(self):
         self.chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",

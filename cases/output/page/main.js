@@ -9,6 +9,7 @@ async function start() {
   startPlots();
   startMotion();
   startIterations();
+  startThumbnails();
   page.setTime(page.time, "start");
   document.documentElement.dataset.ready = "true";
 }

@@ -7,6 +7,7 @@ function readAnimation(data) {
     values.map((v, k) => v * (k % 3 === 2 ? data.angle_unit : data.unit));
   return {
     time: data.time,
+    factor: data.factor,
     box: data.box,
     bodies: data.bodies.map((body) => ({
       ...body,
@@ -15,6 +16,7 @@ function readAnimation(data) {
       anchors: metres(body.anchors),
       roots: metres(body.roots),
       points: body.points?.map(metres),
+      rigid: body.rigid?.map(metres),
     })),
     marks: (data.marks ?? []).map((mark) => ({ ...mark, at: poses(mark.at) })),
     springs: (data.springs ?? []).map((spring) => ({ ...spring, ends: metres(spring.ends) })),
@@ -58,7 +60,8 @@ function undeformedGrid(body, frame) {
 function deformedGrid(body, frame, factor) {
   const points = body.points[frame];
   if (factor === 1) return points;
-  const rigid = placed(undeformedGrid(body, frame), body.poses.slice(3 * frame, 3 * frame + 3));
+  const rigid = body.rigid?.[frame] ??
+    placed(undeformedGrid(body, frame), body.poses.slice(3 * frame, 3 * frame + 3));
   return points.map((p, k) => rigid[k] + factor * (p - rigid[k]));
 }
 

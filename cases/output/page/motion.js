@@ -55,7 +55,9 @@ class MotionView {
   }
 
   change() {
-    this.text.textContent = `t = ${shown(this.motion.time[this.frame], "s")}`;
+    const { time, factor } = this.motion;
+    this.text.textContent = factor ? `load factor ${shown(factor[this.frame])}`
+      : `t = ${shown(time[this.frame], "s")}`;
     this.factorText.textContent = ` ${this.magnification} times`;
     this.canvas?.redraw();
   }

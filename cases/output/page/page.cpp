@@ -40,7 +40,7 @@ std::string scripts_html(const std::string& data) {
                     io::base64(io::compressed(data)) + "</script>\n<script>\n";
   out += page_asset("dygraph.js") + "\n</script>\n<script>\n\"use strict\";\n";
   for (const char* file : {"state.js", "tables.js", "plots.js", "mechanism.js", "motion.js",
-                           "iterations.js", "main.js"})
+                           "iterations.js", "thumbnails.js", "main.js"})
     out += page_asset(file);
   return out + "</script>\n";
 }

@@ -15,7 +15,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kPlaceUnit = 1e-8;  // of the size of the picture of a motion, and of a radian
 constexpr double kOutlineUnit = 1e-5, kParameterUnit = 1e-4;  // of the size of the design domain
 constexpr double kOutlineTolerance = 1e-3;                    // of the size of the design domain
-constexpr size_t kMaxCurvePoints = 2000;                      // of a curve
+constexpr size_t kMaxPathFrames = 151;
+constexpr size_t kMaxCurvePoints = 2000;  // of a curve
 
 /// Returns numbers as multiples of a unit.
 Json multiples(std::span<const double> values, double unit) {
@@ -73,6 +74,26 @@ Box box_of(const Animation& animation) {
     for (size_t f = 0; f + 2 < mark.at.size(); f += 3) add(mark.at[f], mark.at[f + 1]);
   for (const AnimatedSpring& spring : animation.springs)
     for (size_t k = 0; k + 1 < spring.ends.size(); k += 2) add(spring.ends[k], spring.ends[k + 1]);
+  return out;
+}
+
+/// Returns the frames that the page has: all of a motion, and of a long path equally spaced ones
+/// with the first and the last one.
+std::vector<size_t> shown_frames(const Animation& animation) {
+  const size_t n = animation.time.size();
+  const size_t most = animation.factor.empty() ? n : std::min(n, kMaxPathFrames);
+  std::vector<size_t> out;
+  for (size_t k = 0; k < most; ++k) out.push_back(most > 1 ? k * (n - 1) / (most - 1) : 0);
+  return out;
+}
+
+/// Returns the values of the shown frames, `width` values per frame.
+std::vector<double> chosen(const std::vector<double>& all, const std::vector<size_t>& frames,
+                           size_t width) {
+  std::vector<double> out;
+  for (const size_t f : frames)
+    for (size_t k = f * width; k < std::min(all.size(), (f + 1) * width); ++k)
+      out.push_back(all[k]);
   return out;
 }
 
@@ -143,32 +164,66 @@ Json animation_data(const Animation& animation) {
   const Box box = box_of(animation);
   const double unit = kPlaceUnit * size_of(box);
   Json out = {{"unit", unit}, {"angle_unit", kPlaceUnit}, {"box", box_data(box)}};
-  out["time"] = animation.time;
   const size_t n_frames = animation.time.size();
+  const std::vector<size_t> shown = shown_frames(animation);
+  out["time"] = chosen(animation.time, shown, 1);
+  if (!animation.factor.empty()) out["factor"] = chosen(animation.factor, shown, 1);
   for (const AnimatedBody& body : animation.bodies) {
     Json& each = out["bodies"].emplace_back();
     each = {{"name", body.name}, {"kind", kind_of(body)}, {"width", body.width}};
-    each["poses"] = pose_multiples(body.poses, unit);
+    each["poses"] = pose_multiples(chosen(body.poses, shown, 3), unit);
     if (!body.shape.empty()) each["shape"] = multiples(body.shape, unit);
     if (!body.anchors.empty()) each["anchors"] = multiples(body.anchors, unit);
     if (body.kind != AnimatedBody::Kind::grid) continue;
     each["along"] = body.along;
     each["across"] = body.across;
     each["largest"] = body.largest;
-    each["roots"] = multiples(body.roots, unit);
+    each["roots"] = multiples(chosen(body.roots, shown, 1), unit);
     const size_t n = body.points.size() / n_frames;
-    for (size_t f = 0; f < n_frames; ++f)
+    for (const size_t f : shown) {
       each["points"].push_back(multiples(std::span(body.points).subspan(f * n, n), unit));
+      if (!body.rigid.empty())
+        each["rigid"].push_back(multiples(std::span(body.rigid).subspan(f * n, n), unit));
+    }
   }
   for (const AnimatedMark& mark : animation.marks)
     out["marks"].push_back({{"name", mark.name},
                             {"type", mark.type},
                             {"ground", mark.ground},
                             {"driven", mark.driven},
-                            {"at", pose_multiples(mark.at, unit)}});
+                            {"at", pose_multiples(chosen(mark.at, shown, 3), unit)}});
   for (const AnimatedSpring& spring : animation.springs)
-    out["springs"].push_back(
-        {{"name", spring.name}, {"type", spring.type}, {"ends", multiples(spring.ends, unit)}});
+    out["springs"].push_back({{"name", spring.name},
+                              {"type", spring.type},
+                              {"ends", multiples(chosen(spring.ends, shown, 4), unit)}});
+  return out;
+}
+
+Json static_loads_data(const Grid& g, std::span<const StaticLoad> loads) {
+  constexpr int kIntervals = 24;
+  const auto lines = [](int cells, int intervals) {
+    std::vector<int> out;
+    for (int k = 0; k <= intervals; ++k) out.push_back(k * cells / intervals);
+    return out;
+  };
+  const int n = std::min(kIntervals, std::max(g.nx, g.ny)), longest = std::max(g.nx, g.ny);
+  const std::vector<int> along = lines(g.nx, std::max(1, g.nx * n / longest)),
+                         across = lines(g.ny, std::max(1, g.ny * n / longest));
+  Json out = Json::object();
+  for (const StaticLoad& load : loads) {
+    if (load.displacement.size() == 0) continue;
+    const double largest = load.displacement.lpNorm<Eigen::Infinity>(), unit = 1e-4 * largest;
+    Json& each = out["loads"].emplace_back();
+    each = {{"name", load.name}, {"unit", unit}, {"displacement", Json::array()}};
+    for (const int i : along)
+      for (const int j : across)
+        for (int c = 0; c < 2; ++c)
+          each["displacement"].push_back(
+              unit > 0 ? std::llround(load.displacement[2 * g.node(i, j) + c] / unit) : 0);
+  }
+  if (out.empty()) return out;
+  for (const int i : along) out["x"].push_back(g.x0 + i * g.dx());
+  for (const int j : across) out["y"].push_back(g.y0 + j * g.dy());
   return out;
 }
 

@@ -19,6 +19,11 @@ nlohmann::ordered_json animation_data(const Animation& animation);
 /// between their neighbours that remain.
 std::vector<Vec2> thinned(const std::vector<Vec2>& ring, double tolerance);
 
+/// Returns the displacements of the static loads of a plate on every few nodes of its cells: a grid
+/// with at most 24 intervals along its longer side, as multiples of 1e-4 of the largest
+/// displacement of each load. The object is empty if no displacements are known.
+nlohmann::ordered_json static_loads_data(const Grid& grid, std::span<const StaticLoad> loads);
+
 /// Returns the outline of a design in material coordinates, with tolerance 1e-3 of its size.
 /// @param frame  box that contains the design domain
 nlohmann::ordered_json outline_data(std::span<const Region> outline, const Box& frame);
