@@ -45,7 +45,7 @@ void add_case(const StabilityOptions& options, const std::string& name, Plan& ou
     row.parameter = perturbation.parameter;
     Variant& variant = out.variants.emplace_back();
     variant.name = scene.name + "/" + folder;
-    variant.case_name = path;
+    variant.case_name = name;  // a shipped case may have another path on another machine
     variant.overrides = short_overrides(scene, perturbation.part);
     variant.overrides.insert(variant.overrides.end(), perturbation.overrides.begin(),
                              perturbation.overrides.end());

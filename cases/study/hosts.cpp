@@ -113,7 +113,8 @@ class Hosts {
     io::write_file(stem_ + ".log", out);
   }
 
-  /// Returns the files that the rows read, which are sent to the machines.
+  /// Returns the files that the rows read, which are sent to the machines. The machines have the
+  /// files of shipped cases.
   std::set<std::string> inputs() const {
     std::set<std::string> out;
     for (size_t i = 0; i < variants_.size(); ++i) {
@@ -121,7 +122,7 @@ class Hosts {
       const Variant& variant = variants_[i];
       const std::string& name = variant.case_name.empty() ? options_.case_name : variant.case_name;
       const io::CaseFile file = case_of(options_, variant);
-      if (fs::exists(name)) {
+      if (fs::is_regular_file(name)) {
         if (fs::path(name).is_absolute())
           throw Error::input("--hosts: the path of the case '" + name +
                              "' has to be relative to the working directory");
@@ -129,7 +130,8 @@ class Hosts {
       }
       for (const std::string& each : overrides_of_files(file)) {
         const size_t at = each.find('=');  // such as "drive.0.csv='/data/turn.csv'"
-        out.insert(path_to_send(each.substr(at + 2, each.size() - at - 3), "the file"));
+        const std::string path = each.substr(at + 2, each.size() - at - 3);
+        if (!path.starts_with(cases_folder() + "/")) out.insert(path_to_send(path, "the file"));
       }
     }
     return out;
