@@ -170,11 +170,14 @@ std::string load_set_table(const RunFolder::LoadSets& sets, const RunResult& res
   const std::vector<HtmlColumn> columns = {
       {"load", "", "Number of the load set."},
       {"time", "s", "Time of the motion whose displacements the load causes."},
-      {"strain energy", "J", "Strain energy of the body in the motion at this time."},
+      {"strain energy", "J",
+       "Strain energy of the body in the motion at this time, with the design that the cycle began "
+       "with: in the first cycle the initial bars."},
       {"compliance", "J", "Work of the load on the static displacements of the crisp design."},
-      {"deviation from the motion", "%",
+      {"deviation at the start of the cycle", "%",
        "Strain energy of the static displacements minus that of the motion, relative to the "
-       "motion."},
+       "motion, for the design that the cycle began with. Values above 100 % are usual for initial "
+       "bars. The deviation of the final design is load_difference in run.json."},
       {"largest displacement", "m", "Largest displacement of the exported outline under the load."},
       {"largest stress", "Pa",
        "Largest von Mises stress of the exported outline, away from supports and loads."},

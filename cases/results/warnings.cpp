@@ -202,7 +202,7 @@ void add_load_differences(const Scene& scene, const DesignResult& design, Warnin
       out.push_back({"The design loads of body '" + d.body + "' differ by " +
                      io::to_text(100 * d.loads, 2) +
                      " % of the energy from the loads of the motion with the final design. " +
-                     (scene.cycle.max_cycles > static_cast<int>(design.verdicts.size())
+                     (scene.cycle.max_cycles > std::max(1, static_cast<int>(design.verdicts.size()))
                           ? "No further cycle reduced this difference and improved the design."
                           : "Increase cycle.max_cycles to reduce this difference.")});
     if (d.geometric > kLargest && !scene.verifies_on_cells())
