@@ -148,6 +148,9 @@ void write_rows(std::span<const VariantResult> rows, const std::string& path) {
       "row",       "folder",  "status",      "exit_code",    "version",           "commit",
       "processor", "kernels", "seconds_cpu", "seconds_wall", "peak_memory_bytes", "message"};
   io::CsvWriter csv(path, columns);
+  const auto folder_in_table = [](const std::string& folder, const fs::path& table) {
+    return fs::path(folder).lexically_proximate(table.parent_path()).string();
+  };
   const auto cell = [](bool known, double value) {
     return known && std::isfinite(value) ? io::Cell(value) : io::Cell();
   };
@@ -155,7 +158,7 @@ void write_rows(std::span<const VariantResult> rows, const std::string& path) {
     const bool ran = row.done() || row.status == "failed";
     const bool has_code = ran && row.ending.code >= 0;
     const std::vector<io::Cell> cells = {row.name,
-                                         row.directory,
+                                         folder_in_table(row.directory, path),
                                          row.status,
                                          has_code ? io::Cell(row.ending.code) : io::Cell(),
                                          row.origin.version,

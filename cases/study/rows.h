@@ -45,8 +45,8 @@ std::string rows_note(std::span<const VariantResult> rows, bool keeps_failures =
 /// they differ; empty otherwise.
 std::string origin_note(std::span<const VariantResult> rows);
 
-/// Writes a table with a line per row: folder, status, exit code, origin, times, memory and
-/// message.
+/// Writes a table with a line per row: folder relative to that of the table, status, exit code,
+/// origin, times, memory and message.
 /// @throws Error (input) when the file cannot be written.
 void write_rows(std::span<const VariantResult> rows, const std::string& path);
 

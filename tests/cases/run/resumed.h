@@ -46,8 +46,7 @@ inline std::map<std::string, std::string> lasting(const std::string& folder) {
         // Factorizations are left out here and in run.json, because archived evaluations are not
         // factored again.
         if (table.columns[c].find("seconds") != std::string::npos ||
-            table.columns[c] == "factorizations" || table.columns[c] == "folder" ||
-            table.columns[c] == "peak_memory_bytes")
+            table.columns[c] == "factorizations" || table.columns[c] == "peak_memory_bytes")
           continue;
         text += table.columns[c];
         for (const auto& cell : table.texts(table.columns[c])) text += "," + cell;
