@@ -81,6 +81,15 @@ VectorXd start_vector(Eigen::Index n) {
   return out;
 }
 
+/// Returns the dimensions of Krylov spaces that are tried one after the other. A larger space
+/// converges where the wanted modes end between two of nearly equal size.
+/// @param n  number of unknowns, which a space does not exceed
+std::vector<int> krylov_sizes(int count, Eigen::Index n) {
+  std::vector<int> out = {krylov_size(count)};
+  for (int k = 0; k < 3 && 4 * out.back() <= n; ++k) out.push_back(2 * out.back());
+  return out;
+}
+
 [[noreturn]] void refuse() {
   throw Error::numerical(
       "natural frequencies: the eigenvalue iteration did not converge; ask for another number of "
@@ -122,14 +131,17 @@ struct SymmetricModes {
 
 SymmetricModes lowest_modes(SymmetricInverse& inverse, const SparseMatrix& mass, int count) {
   MassProduct product{mass};
-  Spectra::SymGEigsShiftSolver<SymmetricInverse, MassProduct, Spectra::GEigsMode::ShiftInvert>
-      solver(inverse, product, count, krylov_size(count), -1);
   const VectorXd start = start_vector(mass.rows());
-  solver.init(start.data());
-  solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance,
-                 Spectra::SortRule::SmallestAlge);
-  if (solver.info() != Spectra::CompInfo::Successful) refuse();
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  for (const int size : krylov_sizes(count, mass.rows())) {
+    Spectra::SymGEigsShiftSolver<SymmetricInverse, MassProduct, Spectra::GEigsMode::ShiftInvert>
+        solver(inverse, product, count, size, -1);
+    solver.init(start.data());
+    solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance,
+                   Spectra::SortRule::SmallestAlge);
+    if (solver.info() == Spectra::CompInfo::Successful)
+      return {solver.eigenvalues(), solver.eigenvectors()};
+  }
+  refuse();
 }
 
 std::vector<Eigenpair> lanczos(const SmallMotion& motion, double shift, int count) {
@@ -184,18 +196,21 @@ std::vector<Eigenpair> arnoldi(const SmallMotion& motion, double shift, int coun
     inverse.perform_op(start.data(), next.data());
     start.swap(next);
   }
-  Spectra::GenEigsSolver<QuadraticInverse> solver(const_cast<QuadraticInverse&>(inverse), pairs,
-                                                  krylov_size(pairs));
-  solver.init(start.data());
-  solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance,
-                 Spectra::SortRule::LargestMagn);
-  if (solver.info() != Spectra::CompInfo::Successful) refuse();
-  std::vector<Eigenpair> out;
-  const VectorXcd values = solver.eigenvalues();
-  const auto vectors = solver.eigenvectors();
-  for (Eigen::Index k = 0; k < values.size(); ++k)
-    out.push_back({shift * (1.0 + 1.0 / values[k]), vectors.col(k).head(n)});
-  return out;
+  for (const int size : krylov_sizes(pairs, n)) {
+    Spectra::GenEigsSolver<QuadraticInverse> solver(const_cast<QuadraticInverse&>(inverse), pairs,
+                                                    size);
+    solver.init(start.data());
+    solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance,
+                   Spectra::SortRule::LargestMagn);
+    if (solver.info() != Spectra::CompInfo::Successful) continue;
+    std::vector<Eigenpair> out;
+    const VectorXcd values = solver.eigenvalues();
+    const auto vectors = solver.eigenvectors();
+    for (Eigen::Index k = 0; k < values.size(); ++k)
+      out.push_back({shift * (1.0 + 1.0 / values[k]), vectors.col(k).head(n)});
+    return out;
+  }
+  refuse();
 }
 
 }  // namespace

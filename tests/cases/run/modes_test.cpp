@@ -51,6 +51,90 @@ TEST(ModesCommand, WritesTablesAndShapes) {
     EXPECT_TRUE(fs::exists(folder + "/" + name)) << name;
 }
 
+/// A lever with two flexible arms of different length, tip masses, and a spring with a damper.
+constexpr const char* kLever = R"TOML(
+gravity = [0.0, -9.81]
+[time]
+end = 0.5
+step = 1e-3
+[[drive]]
+name = "turn"
+formula = "piecewise(pi/3*(t/0.4 - sin(2*pi*t/0.4)/(2*pi)), 0.4, pi/3)"
+[[rigid_body]]
+name = "shaft"
+mass = 0.8
+size = [0.08, 0.08]
+[[body]]
+name = "arm"
+element = "ancf_plate"
+terms = ["inertia", "membrane"]
+length = 0.5
+width = 0.06
+thickness = 0.004
+material = "aluminium"
+elements = [10, 2]
+[[body]]
+name = "counter"
+element = "ancf_plate"
+terms = ["inertia", "membrane_assumed"]
+length = 0.25
+width = 0.06
+thickness = 0.004
+material = "aluminium"
+elements = [5, 2]
+[[joint]]
+type = "revolute"
+name = "bearing"
+b = "shaft"
+[[joint]]
+type = "angle_drive"
+b = "shaft"
+angle = "turn"
+[[joint]]
+type = "weld"
+body = "arm"
+edge = "root"
+to = "shaft"
+point = [0.04, 0.0]
+[[joint]]
+type = "weld"
+body = "counter"
+edge = "root"
+to = "shaft"
+point = [-0.04, 0.0]
+angle = "180 deg"
+[[point_mass]]
+body = "arm"
+at = "free_end"
+mass = 0.3
+[[point_mass]]
+body = "counter"
+at = "free_end"
+mass = 0.6
+[[spring]]
+type = "torsion"
+b = "shaft"
+stiffness = 2.0
+damping = 0.05
+)TOML";
+
+// The iteration converges for every number of modes, also where the last mode that is asked for is
+// followed by one of nearly equal size. All numbers of modes give the same frequencies.
+TEST(ModesCommand, EveryNumberOfModesConverges) {
+  const Scratch scratch;
+  const std::string file = scratch.write("lever.toml", kLever), folder = scratch / "modes";
+  std::vector<double> all;
+  for (const int count : {8, 1, 3, 5, 6}) {
+    const test::Ended ended = test::flexmorph(
+        scratch, {"modes", file, "--time", "0.25", "--count", std::to_string(count), "-o", folder});
+    ASSERT_EQ(ended.code, 0) << count << ended.err;
+    const std::vector<double> found = io::read_csv(folder + "/modes.csv").numbers("frequency");
+    ASSERT_EQ(found.size(), static_cast<size_t>(count));
+    if (all.empty()) all = found;
+    for (size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], all[k], 1e-7 * all[k]) << count;
+  }
+}
+
 // Every refusal names the value and leaves no folder behind.
 TEST(ModesCommand, RefusesWhatItCannotUse) {
   const Scratch scratch;
