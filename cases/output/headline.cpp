@@ -77,7 +77,8 @@ std::string verdict_note(const Scene& scene, const RunResult& result) {
 
 PageFact gain_fact(const Gain& gain) {
   const double percent = 100 * std::abs(gain.change());
-  return {"Gain", io::to_text(percent, 3) + (gain.change() < 0 ? " % less" : " % more"),
+  const bool less = gain.change() < 0;
+  return {less ? "Gain" : "Loss", io::to_text(percent, 3) + (less ? " % less" : " % more"),
           gain.quantity + " than uniform material",
           "Change of the " + gain.quantity +
               " from uniform material of equal mass to the design; less is better."};

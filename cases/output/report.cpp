@@ -101,11 +101,14 @@ class RunPage {
       out.html += "<div class=\"design\">" + figure(p.result) + "</div>\n";
       data_["designs"][p.body] = outline_data(p.outline, frame_of(grid_of(scene_, p.body)));
     }
+    const std::string unit = scene_.output.unit.name;
     if (!out.html.empty())
       out.html += paragraph(
-          "The part for the shop is in design.dxf and design.step; the unit of "
-          "length of the .dxf and .stl files is " +
-          std::string(scene_.output.unit.name) + ".");
+          (result_.info.status.find("not usable") == std::string::npos
+               ? std::string()
+               : "This design is not usable; a warning at the top of the page says why. ") +
+          "The part for the shop is in design.dxf and design.step. The unit of length is mm" +
+          (unit == "mm" ? "." : " in .step files, and " + unit + " in .dxf and .stl files."));
     for (const VerifiedOutline& v : result_.design.outlines)
       if (const std::string svg = plots() ? stress_plot(v) : ""; !svg.empty())
         out.html += "<h3>" +
@@ -152,8 +155,15 @@ class RunPage {
   PageSection iterations_section() {
     PageSection out{"iterations", "Iterations", ""};
     for (const RunFolder::History& h : folder_.histories()) {
-      if (plots())
+      if (plots()) {
         data_["iterations"].push_back(history_data(h, frame_of(grid_of(scene_, h.body))));
+        // The design is the best iteration, which need not be the last one.
+        for (const mmc::BodyOutcome& o : result_.design.outcomes)
+          if (const auto found =
+                  std::ranges::find(h.compliance.rbegin(), h.compliance.rend(), o.compliance);
+              o.body == h.body && found != h.compliance.rend())
+            data_["iterations"].back()["design"] = h.compliance.rend() - found - 1;
+      }
       out.html += plot("convergence_" + h.body, "Convergence of " + h.body, convergence_plot(h));
     }
     for (const RunFolder::DesignPictures& p : folder_.design_pictures())

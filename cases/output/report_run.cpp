@@ -22,8 +22,8 @@ struct KnownFile {
   const char* contents;     ///< What it contains.
 };
 constexpr KnownFile kKnownFiles[] = {
-    {"design", ".dxf", "outline for cutting: lines and arcs in the unit of the case"},
-    {"design", ".step", "solid for CAD programs"},
+    {"design", ".dxf", "outline for cutting: lines and arcs in the unit output.unit"},
+    {"design", ".step", "solid for CAD programs, in mm"},
     {"design", ".stl", "solid for 3D printing"},
     {"design", ".svg", "outline as a picture in full size"},
     {"design", ".inp", "mesh of the outline with its loads, for CalculiX or Abaqus"},

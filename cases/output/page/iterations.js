@@ -47,9 +47,10 @@ class IterationsView {
     const last = this.components.length - 1;
     const place = element("div", { class: "canvas" });
     this.text = element("output", { class: "reading" });
-    this.slider = element("input", { type: "range", min: 0, max: last, value: last,
+    const first = history.design ?? last;
+    this.slider = element("input", { type: "range", min: 0, max: last, value: first,
       "aria-label": "iteration", oninput: () => this.show() });
-    this.at = last;
+    this.at = first;
     this.player = new Player((seconds) => this.advance(seconds));
     parent.append(place, element("div", { class: "controls" }, this.player.button, this.slider),
       this.text);
@@ -72,7 +73,7 @@ class IterationsView {
     const h = this.history;
     this.text.textContent = `iteration ${k + 1} of ${this.components.length}: compliance ` +
       `${shown(h.compliance[k], "J")}, volume fraction ${shown(h.volume[k])}, KKT residual ` +
-      shown(h.kkt[k]);
+      shown(h.kkt[k]) + (k === h.design ? "; the design is this iteration" : "");
     this.canvas.redraw();
   }
 

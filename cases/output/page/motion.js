@@ -58,7 +58,9 @@ class MotionView {
     const { time, factor } = this.motion;
     this.text.textContent = factor ? `load factor ${shown(factor[this.frame])}`
       : `t = ${shown(time[this.frame], "s")}`;
-    this.factorText.textContent = ` ${this.magnification} times`;
+    const times = this.magnification;
+    this.factorText.textContent = ` ${times} times` +
+      (times === 1 ? "" : " (flexible bodies; rigid bodies and joints keep their places)");
     this.canvas?.redraw();
   }
 
