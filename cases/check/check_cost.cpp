@@ -38,7 +38,7 @@ double points_of(const Body& body) {
 
 // Rates of one core [operations/s] of motions and of factorizations; seconds per frame and per
 // point of a frame, per cell of a design and iteration; seconds of the start, plots and the report.
-constexpr double kMotionRate = 5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
+constexpr double kMotionRate = 6.5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
                  kPointSeconds = 2e-7;
 // Time of a motion on cells with its adjoint computation, divided by the time of the motion.
 constexpr double kGradient = 3;
