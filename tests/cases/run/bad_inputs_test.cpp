@@ -167,7 +167,7 @@ const Tried kTyped[] = {
      "",
      "",
      "",
-     {"--threads", "1 to 256"},
+     {"--threads", "256"},
      {"run", "CASE", "-o", "OUT", "--threads", "0"}},
 };
 static_assert(std::size(kTyped) >= 40);
