@@ -80,7 +80,9 @@ VariantResult LevelRows::result_of(const Variant& row, double limit, bool verifi
     out = outcome.results.front();
   }
   results_.push_back(out);
-  write_rows(results_, options_.directory + "/rows.csv");
+  std::vector<VariantResult> rows = results_;  // in an order that depends on measured times
+  std::ranges::sort(rows, {}, &VariantResult::name);
+  write_rows(rows, options_.directory + "/rows.csv");
   if (out.done() || out.status == "failed") return out;
   missing_.push_back(row);
   out.status = kMissing;
