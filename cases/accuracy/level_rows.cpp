@@ -75,7 +75,7 @@ VariantResult LevelRows::result_of(const Variant& row, double limit, bool verifi
   } else {
     StudyOptions options = options_;
     options.time_limit = limit;
-    const StudyOutcome outcome = run_variants(options, {&row, 1}, [](auto) {});
+    const StudyOutcome outcome = run_rows(options, {&row, 1}, [](auto) {});
     if (outcome.exit_code == 4 && !are_elsewhere()) throw Interrupted();
     out = outcome.results.front();
   }

@@ -54,8 +54,9 @@ void write_rows(std::span<const VariantResult> rows, const std::string& path);
 /// again; 3 if a row failed; 0 otherwise.
 int exit_code_of(const StudyOptions& options, std::span<const VariantResult> rows);
 
-/// Function that receives the results so far.
-using ResultsChanged = std::function<void(std::span<const VariantResult>)>;
+/// Runs, collects or prints rows as run_variants() does, and writes no table.
+StudyOutcome run_rows(const StudyOptions& options, std::span<const Variant> variants,
+                      const ResultsChanged& changed);
 
 /// Reads the results of all rows that exist, and runs none.
 StudyOutcome collect_rows(const StudyOptions& options, std::span<const Variant> variants,

@@ -200,20 +200,24 @@ StudyOutcome run_here(const StudyOptions& options, std::span<const Variant> vari
 
 }  // namespace
 
-StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
-                          const std::function<void(std::span<const VariantResult>)>& changed) {
+StudyOutcome run_rows(const StudyOptions& options, std::span<const Variant> variants,
+                      const ResultsChanged& changed) {
   const Dispatch& dispatch = options.dispatch;
   if (dispatch.prints()) {
     std::fputs(rows_text(options, variants).c_str(), stdout);
     return {};
   }
-  const auto write_and_tell = [&](std::span<const VariantResult> rows) {
+  if (dispatch.collect) return collect_rows(options, variants, changed);
+  if (!dispatch.hosts.empty()) return run_on_hosts(options, variants, changed);
+  return run_here(options, variants, changed);
+}
+
+StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
+                          const ResultsChanged& changed) {
+  return run_rows(options, variants, [&](std::span<const VariantResult> rows) {
     write_rows(rows, options.directory + "/rows.csv");
     changed(rows);
-  };
-  if (dispatch.collect) return collect_rows(options, variants, write_and_tell);
-  if (!dispatch.hosts.empty()) return run_on_hosts(options, variants, write_and_tell);
-  return run_here(options, variants, write_and_tell);
+  });
 }
 
 std::vector<std::string> lean_overrides(const Scene& scene, Part part) {

@@ -150,6 +150,9 @@ struct StudyOutcome {
   std::vector<VariantResult> results;  ///< Results of all variants; none if lines were printed.
 };
 
+/// Function that receives the results so far.
+using ResultsChanged = std::function<void(std::span<const VariantResult>)>;
+
 /// Runs the variants that are not finished yet, where StudyOptions::dispatch says. A variant is
 /// finished if its run is complete or has failed (exit codes 0, 3 and 5) and the case in its folder
 /// is identical. If the study is interrupted, the current runs are interrupted too and keep their
@@ -158,7 +161,7 @@ struct StudyOutcome {
 /// @param changed  called with the results so far, after the end of every run and at the end
 /// @throws Error (input) when the folder cannot be written.
 StudyOutcome run_variants(const StudyOptions& options, std::span<const Variant> variants,
-                          const std::function<void(std::span<const VariantResult>)>& changed);
+                          const ResultsChanged& changed);
 
 /// Returns the path of the run folder of a variant.
 std::string folder_of(const StudyOptions& options, const Variant& variant);
