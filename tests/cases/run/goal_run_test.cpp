@@ -83,8 +83,10 @@ TEST(GoalRun, VolumeUnderComplianceIsTheInverseOfComplianceUnderVolume) {
       designed("light", {"expect=", "design.max_volume=", "design.minimize=volume",
                          "design.max_compliance=" + io::to_text(compliance),
                          "design.start='" + (scratch / "stiff/components.csv") + "'"});
-  EXPECT_LE(light["crisp_compliance"].get<double>(), (1 + 5e-3) * compliance);
-  EXPECT_LE(light["crisp_volume"].get<double>(), 1.02 * stiff["crisp_volume"].get<double>());
+  // A limit on the compliance of the crisp design holds within 0.5 %.
+  constexpr double kMost = 1 + 5e-3;
+  EXPECT_LE(light["crisp_compliance"].get<double>(), kMost * compliance);
+  EXPECT_LE(light["crisp_volume"].get<double>(), kMost * stiff["crisp_volume"].get<double>());
 }
 
 // Under given loads the full plate has the least compliance.
