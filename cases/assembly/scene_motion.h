@@ -18,9 +18,8 @@ class SceneMotion final : public mmc::MotionResponse {
   };
   /// Creates the motion of a prepared case.
   /// @param prepared  must live longer
-  /// @param keep_running  cancellation callback; evaluate() and crisp() call it at every step of
-  /// the
-  ///                      motion and of its adjoint, and throw StoppedMotion when it returns false
+  /// @param keep_running  cancellation callback of evaluate() and crisp(), called at every step;
+  ///                      they throw StoppedMotion when it returns false
   SceneMotion(const PreparedCase& prepared, const Settings& settings,
               std::function<bool()> keep_running);
 

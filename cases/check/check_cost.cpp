@@ -13,9 +13,6 @@ namespace {
 // energies counts as one), linear solutions, and tangents. With material flow a tangent is outdated
 // sooner.
 constexpr double kForces = 7, kSolutions = 5, kTangents = 0.1, kTangentsOfFlow = 0.4;
-// Tangents for every mesh line of cells that is inserted or removed: the number that gives the
-// measured times of four shipped cases.
-constexpr double kTangentsOfLine = 1;
 constexpr double kStaticIterations = 3;  // per step of a static path, each with a new tangent
 
 // Operations of a sparse factorization divided by n b², for n unknowns and the bandwidth b.
@@ -118,13 +115,14 @@ double cells_seconds(const Scene& scene, double steps, int parts, double cell = 
         body.row->make(body, cells.time.end,
                        {1, 1});  // one element only; its operations do not depend on the mesh
     const ElementOperations each = body.row->operations(body, *one);
+    // With material flow, a tangent for every mesh line that is inserted or removed gives the
+    // measured times of four shipped cases.
     const double larger = std::max(1.0, cell / body.cell),
                  along = 0.5 * (body.length + body.longest(cells.time.end)) / (larger * body.cell),
                  across = body.elements[1] / larger,
                  band = (std::min(along, across) + 2) * body.dim(),
-                 tangents = body.flow ? kTangentsOfLine * line_changes(body, cells.time.end) /
-                                            (larger * steps)
-                                      : kTangents;
+                 tangents =
+                     body.flow ? line_changes(body, cells.time.end) / (larger * steps) : kTangents;
     step += along * across * (kForces * each.force + tangents * each.tangent);
     step += along * across * body.dim() * band * (tangents * kFactor * band + 4 * kSolutions);
   }
