@@ -19,12 +19,13 @@ std::vector<LevelValue> sequence(const std::vector<double>& h, const Law& law) {
   return out;
 }
 
-const std::vector<double> kHalves = {4, 2, 1, 0.5, 0.25};
+const std::vector<double> kHalvedSteps = {4, 2, 1, 0.5, 0.25};
 const Theory kSecond{2, "a textbook"};
 
 TEST(Orders, ArePreciseForPowersWithAnyRatio) {
   for (const double p : {0.7, 1.0, 2.0, 4.0, 6.0})
-    for (const std::vector<double>& h : {kHalves, std::vector<double>{1.5, 1, 0.75, 0.5, 0.3}}) {
+    for (const std::vector<double>& h :
+         {kHalvedSteps, std::vector<double>{1.5, 1, 0.75, 0.5, 0.3}}) {
       const auto values = sequence(h, [&](double x) { return 3 - 2 * std::pow(x, p); });
       const ExtrapolatedLimit limit = limit_of(values, Approach::power, {}, 3);
       EXPECT_TRUE(limit.converged) << limit.sentence;
@@ -63,18 +64,18 @@ TEST(Orders, ThatDisagreeAreNotCalledConverged) {
 }
 
 TEST(Orders, OtherThanTheoryAreNotCalledConverged) {
-  const auto first = sequence(kHalves, [](double h) { return 1 + h; });
+  const auto first = sequence(kHalvedSteps, [](double h) { return 1 + h; });
   const ExtrapolatedLimit limit = limit_of(first, Approach::power, kSecond, 1);
   EXPECT_FALSE(limit.converged);
   EXPECT_NE(limit.sentence.find("a textbook"), std::string::npos) << limit.sentence;
   EXPECT_TRUE(limit_of(first, Approach::power, Theory{1, ""}, 1).converged);
-  const auto near = sequence(kHalves, [](double h) { return 1 + std::pow(h, 1.9); });
+  const auto near = sequence(kHalvedSteps, [](double h) { return 1 + std::pow(h, 1.9); });
   // The order 1.9 is within 0.15 of the theory.
   EXPECT_TRUE(limit_of(near, Approach::power, kSecond, 1).converged);
 }
 
 TEST(Orders, AValueThatSwingsHasNone) {
-  const auto values = sequence(kHalves, [](double h) {
+  const auto values = sequence(kHalvedSteps, [](double h) {
     return 1 + 0.1 * h * (std::lround(std::log2(h)) % 2 == 0 ? 1 : -1);
   });
   const ExtrapolatedLimit limit = limit_of(values, Approach::power, {}, 1);
@@ -86,7 +87,7 @@ TEST(Orders, ALogarithmHasNoLimit) {
   // A point load on a plane continuum has a logarithmic law: the differences between levels are
   // equal (order 0). If no theory is given, the uncertainty covers a level a thousand times finer:
   // ln 1000.
-  const auto values = sequence(kHalves, [](double h) { return 10 - std::log(h); });
+  const auto values = sequence(kHalvedSteps, [](double h) { return 10 - std::log(h); });
   const ExtrapolatedLimit limit = limit_of(values, Approach::power, {}, 10);
   EXPECT_FALSE(limit.converged);
   EXPECT_NEAR(limit.uncertainty, std::log(1000), 1e-9) << limit.sentence;
@@ -97,13 +98,13 @@ TEST(Orders, ALogarithmHasNoLimit) {
 }
 
 TEST(Orders, DifferencesThatGrowBoundNothing) {
-  const auto values = sequence(kHalves, [](double h) { return 1 / h; });
+  const auto values = sequence(kHalvedSteps, [](double h) { return 1 / h; });
   EXPECT_FALSE(limit_of(values, Approach::power, {}, 1).bounded());
 }
 
 TEST(Orders, WhereNoneIsKnownItIsSaidWhy) {
   const Theory why{std::numeric_limits<double>::quiet_NaN(), "corners are singular"};
-  const auto swings = sequence(kHalves, [](double h) {
+  const auto swings = sequence(kHalvedSteps, [](double h) {
     return 1 + 0.1 * h * (std::lround(std::log2(h)) % 2 == 0 ? 1 : -1);
   });
   const ExtrapolatedLimit limit = limit_of(swings, Approach::power, why, 1);
@@ -114,7 +115,7 @@ TEST(Orders, WhereNoneIsKnownItIsSaidWhy) {
   // If differences do not decrease, the range is that of the last four values, 1 .. 1.35.
   const std::vector<LevelValue> grow = {{8, 1.5}, {4, 1}, {2, 1.3}, {1, 1.1}, {0.5, 1.35}};
   EXPECT_NEAR(limit_of(grow, Approach::power, why, 1).uncertainty, 3 * 0.35, 1e-12);
-  const auto first = sequence(kHalves, [](double h) { return 1 + h; });
+  const auto first = sequence(kHalvedSteps, [](double h) { return 1 + h; });
   EXPECT_TRUE(limit_of(first, Approach::power, why, 1).converged);
 }
 
@@ -130,7 +131,7 @@ TEST(Orders, TheFloorOfRoundingIsNoOrder) {
   EXPECT_NEAR(limit.value, 1, 1e-9);
   EXPECT_TRUE(std::isnan(limit.orders.back()));
   // Equal values on all levels mean that the quantity does not depend on the parameter.
-  const auto same = sequence(kHalves, [](double) { return 5.0; });
+  const auto same = sequence(kHalvedSteps, [](double) { return 5.0; });
   const ExtrapolatedLimit none = limit_of(same, Approach::power, kSecond, 5);
   EXPECT_TRUE(none.converged);
   EXPECT_EQ(none.uncertainty, 0);

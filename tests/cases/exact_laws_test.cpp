@@ -23,7 +23,7 @@ using test::Words;
 using Components = std::vector<Component>;
 
 /// Returns run.json of a run that must succeed.
-json run(const Scratch& scratch, const std::string& name, const Words& changes) {
+json results_of_run(const Scratch& scratch, const std::string& name, const Words& changes) {
   const std::string folder = scratch / "run";
   Words all = {"accuracy=", "output.vtk=false", "output.plots=false"};
   all.insert(all.end(), changes.begin(), changes.end());
@@ -36,7 +36,7 @@ json run(const Scratch& scratch, const std::string& name, const Words& changes) 
 json start_of_short_beam(const Scratch& scratch, const Words& changes) {
   Words all = {"optimizer.max_iterations=0", "design.cell=0.05", "output.crisp_every=0"};
   all.insert(all.end(), changes.begin(), changes.end());
-  return run(scratch, "short_beam", all)["results"][0];
+  return results_of_run(scratch, "short_beam", all)["results"][0];
 }
 
 void expect_ratio(const json& changed, const json& own, const std::string& key, double ratio) {
@@ -116,7 +116,7 @@ TEST(ExactLaws, NothingMovesAtRest) {
 // The first row of elements has a thousandth of the length of its neighbour.
 TEST(TinyElements, KeepTheConstraintsAndTheEnergy) {
   const Scratch scratch;
-  const json motion = run(
+  const json motion = results_of_run(
       scratch, "plate_pendulum",
       {"body.elements=[2, 2]", "body.line=[{ index = 1, at = 3e-4 }]", "time.end=0.01"})["motion"];
   EXPECT_LT(motion["constraint_drift"].get<double>(), 1e-8);
@@ -141,7 +141,7 @@ TEST(ExactLaws, LinesComeInWhenMaxLengthIsReached) {
   for (const Row& row :
        {Row{0.37 * first, first + 0.4 * again, 1}, Row{first / 30, first + 0.4 * again, 1},
         Row{0.05 * (first + 0.4 * again), first + 1.4 * again, 2}, Row{first / 25, first, 0}}) {
-    const json out = run(
+    const json out = results_of_run(
         scratch, name,
         {"design=", "optimizer=", "cycle=", "verify=", "esl=", "time.step=" + io::to_text(row.step),
          "time.end=" + io::to_text(row.end)});

@@ -1,6 +1,7 @@
 #include "tests/cases/program.h"
 
 #include <algorithm>
+#include <iomanip>
 #include <sstream>
 
 #include "io/screen.h"
@@ -103,6 +104,19 @@ Ended run(const Scratch& scratch, const std::string& name, const std::string& fo
   Words words = run_text(name, folder, changes);
   if (!changes.empty()) words.insert(words.end(), {"--set", "expect="});
   return flexmorph(scratch, words);
+}
+
+io::CsvTable motion_of(const Scratch& scratch, const std::string& text, const std::string& to) {
+  const std::string folder = scratch / to;
+  const Ended ended = run(scratch, scratch.write(to + ".toml", text), folder);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  return io::read_csv(folder + "/motion.csv");
+}
+
+std::string exact_text(double x) {
+  std::ostringstream out;
+  out << std::setprecision(17) << x;
+  return out.str();
 }
 
 Words short_run(const std::string& folder, const Words& changes) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/tables.h"
 #include "tests/io/scratch.h"
 #include "tests/support/child_program.h"
 
@@ -53,6 +54,14 @@ Ended flexmorph(const Scratch& scratch, const Words& arguments);
 /// for the unchanged case only.
 Ended run(const Scratch& scratch, const std::string& name, const std::string& folder,
           const Words& changes = {});
+
+/// Runs a case with this text, expects exit code 0, and returns its motion.csv.
+/// @param to    name of the output folder in the scratch folder
+io::CsvTable motion_of(const Scratch& scratch, const std::string& text,
+                       const std::string& to = "out");
+
+/// Returns a number with 17 digits, so that it is read again without a difference.
+std::string exact_text(double x);
 
 /// Returns the arguments that run short_plate.toml with changes.
 Words short_run(const std::string& folder, const Words& changes = {});

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -36,6 +38,13 @@ inline std::string complaint_of_v01(const Changes& changes) {
     return e.what();
   }
   return "";
+}
+
+/// Returns the largest amount of these values.
+inline double largest(const std::vector<double>& values) {
+  double out = 0;
+  for (const double v : values) out = std::max(out, std::abs(v));
+  return out;
 }
 
 /// Returns the location with which a message must begin: the change that it names, otherwise the

@@ -22,8 +22,8 @@ using nlohmann::json;
 using test::Ended;
 using test::Words;
 
-Ended run(const Scratch& scratch, const std::string& name, const Words& changes,
-          const Words& more = {}) {
+Ended stability_run(const Scratch& scratch, const std::string& name, const Words& changes,
+                    const Words& more = {}) {
   Words words = {"run", name, "-o", scratch / "run", "--quiet"};
   words.insert(words.end(), more.begin(), more.end());
   for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
@@ -44,16 +44,16 @@ Words lean(const Words& more) {
 TEST(ConditionOfARun, IsThereOnDemand) {
   const Scratch scratch;
   const Words short_motion = lean({"time.end=2e-3", "body.elements=[2, 2]"});
-  ASSERT_EQ(run(scratch, "plate_pendulum", short_motion).code, 0);
+  ASSERT_EQ(stability_run(scratch, "plate_pendulum", short_motion).code, 0);
   EXPECT_FALSE(run_of(scratch)["motion"].contains("condition"));
-  ASSERT_EQ(run(scratch, "plate_pendulum", short_motion, {"--condition"}).code, 0);
+  ASSERT_EQ(stability_run(scratch, "plate_pendulum", short_motion, {"--condition"}).code, 0);
   EXPECT_GE(run_of(scratch)["motion"]["condition"].get<double>(), 1);
 }
 
 /// Returns the largest condition number of the motion, the static path and the designs.
 double condition_of(const Scratch& scratch, const std::string& name, const Words& changes,
                     int code = 0) {
-  const Ended ended = run(scratch, name, lean(changes), {"--condition"});
+  const Ended ended = stability_run(scratch, name, lean(changes), {"--condition"});
   EXPECT_EQ(ended.code, code) << ended.err;
   const json out = run_of(scratch);
   double worst = 0;
@@ -120,9 +120,9 @@ TEST(Tables, AreThereBeforeTheEnd) {
 TEST(Starts, OfMotionsShorterThanADifference) {
   const Scratch scratch;
   const Ended ended =
-      run(scratch, "motion_platform",
-          lean({"design=", "optimizer=", "esl=", "verify=", "cycle=", "time.step=1e-6",
-                "time.end=1e-5"}));
+      stability_run(scratch, "motion_platform",
+                    lean({"design=", "optimizer=", "esl=", "verify=", "cycle=", "time.step=1e-6",
+                          "time.end=1e-5"}));
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_LT(run_of(scratch)["motion"]["velocity_drift"].get<double>(), 1e-6);
 }
@@ -133,7 +133,7 @@ TEST(Starts, OfMotionsShorterThanADifference) {
 TEST(Starts, AtTemperaturesThatJump) {
   const Scratch scratch;
   const Ended ended =
-      run(scratch, "free_beam_heated", lean({"time.end=0.04", "body.heat.profile=step"}));
+      stability_run(scratch, "free_beam_heated", lean({"time.end=0.04", "body.heat.profile=step"}));
   ASSERT_EQ(ended.code, 0) << ended.err;
   // The energy that a jump of the temperature brings in is not a power. Therefore the energy
   // balance does not contain it, and the warning states this reason.
@@ -155,9 +155,9 @@ TEST(Starts, AreTheSameBitForBit) {
   const Scratch scratch;
   std::string first;
   for (int k = 0; k < 6; ++k) {
-    const Ended ended =
-        run(scratch, "four_bar",
-            lean({"design=", "optimizer=", "esl=", "cycle=", "verify=", "time.end=2e-3"}));
+    const Ended ended = stability_run(
+        scratch, "four_bar",
+        lean({"design=", "optimizer=", "esl=", "cycle=", "verify=", "time.end=2e-3"}));
     ASSERT_EQ(ended.code, 0) << ended.err;
     const std::string table = contents_of(scratch / "run" + "/motion.csv");
     if (k == 0) first = table;

@@ -17,7 +17,7 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr double kLength = 1, kHeight = 0.05, kGravity = 9.81;
+constexpr double kPendulum = 1, kPendulumHeight = 0.05, kGravity = 9.81;
 
 PlaneSection section(double youngs_modulus) { return {0.05, youngs_modulus, 0.3, 7200}; }
 
@@ -58,15 +58,16 @@ double angular_momentum(const Model& model, const State& x) {
 // Round-off of Newton's method accumulates.
 TEST(FreeBeam, KeepsEnergyAndMomenta) {
   for (const char* term : {"gcm", "ecm"}) {
-    Workspace model = beam_model(term,
-                                 std::make_unique<AncfBeam>(uniform_nodes(kLength, 8), kHeight,
-                                                            arc_reference(kLength, 1, 8)),
-                                 1e7, false);
+    Workspace model =
+        beam_model(term,
+                   std::make_unique<AncfBeam>(uniform_nodes(kPendulum, 8), kPendulumHeight,
+                                              arc_reference(kPendulum, 1, 8)),
+                   1e7, false);
     State x = model.reference();
     std::mt19937 random(4);
     std::uniform_real_distribution<double> part(-1, 1);
     for (int k = 0; k < model.n_dofs() / 2; ++k) {
-      const double scale = k % 3 == 0 ? kLength / 8 : 1;
+      const double scale = k % 3 == 0 ? kPendulum / 8 : 1;
       const Vec2 r = x.q.segment<2>(2 * k);
       x.v.segment<2>(2 * k) = 5 * Vec2(-r.y(), r.x()) + scale * Vec2(part(random), part(random));
       x.q.segment<2>(2 * k) += 0.01 * scale * Vec2(part(random), part(random));
@@ -97,8 +98,8 @@ TEST(FreeBeam, KeepsEnergyAndMomenta) {
 /// revolute joint.
 Vec2 pendulum_tip(const std::string& integrator_name, double youngs_modulus, double step,
                   double end) {
-  Workspace model =
-      beam_model("ecm", std::make_unique<AncfBeam>(kLength, kHeight, 4), youngs_modulus, true);
+  Workspace model = beam_model("ecm", std::make_unique<AncfBeam>(kPendulum, kPendulumHeight, 4),
+                               youngs_modulus, true);
   model.add_joint(make_revolute("pin", {}, {"beam", {0, 0}}));
   State x = model.reference();
   IntegratorSettings settings;
@@ -110,7 +111,7 @@ Vec2 pendulum_tip(const std::string& integrator_name, double youngs_modulus, dou
   const int n = static_cast<int>(std::lround(end / step));
   for (int k = 1; k <= n; ++k) integrator->advance(x, end * k / n, [](const State&) {});
   EXPECT_LT(model.location_motion({"beam", {0, 0}}, x).position.norm(), 1e-10);
-  return model.location_motion({"beam", {kLength, 0}}, x).position;
+  return model.location_motion({"beam", {kPendulum, 0}}, x).position;
 }
 
 // The beam is so soft that the steps resolve the vibrations of the sudden start, including the
@@ -135,7 +136,8 @@ TEST(PendulumBeam, IsTheRigidPendulumWhereItIsStiff) {
   double angle = 0, rate = 0;
   const int n = 6000;
   const double h = end / n,
-               c = kGravity * kLength / 2 / (kLength * kLength / 3 + kHeight * kHeight / 12);
+               c = kGravity * kPendulum / 2 /
+                   (kPendulum * kPendulum / 3 + kPendulumHeight * kPendulumHeight / 12);
   for (int k = 0; k < n; ++k) {  // classical Runge-Kutta
     const auto a = [c](double phi) { return -c * std::cos(phi); };
     const double k1 = rate, l1 = a(angle), k2 = rate + h / 2 * l1, l2 = a(angle + h / 2 * k1),

@@ -13,13 +13,13 @@
 #include "fem/terms.h"
 #include "tests/support/rates.h"
 #include "tests/support/reissner_statics.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
 
 // T Fig. 15: the beam is 1 x 0.05 x 0.05 m.
 constexpr double kLength = 1, kHeight = 0.05;
-const PlaneSection kSection{0.05, 2e8, 0.3, 7200};
 const reference::BeamSection kReference{kHeight, 0.05, 2e8, 0.3};
 
 VectorXd vector(double x, double y) {
@@ -30,10 +30,10 @@ VectorXd vector(double x, double y) {
 
 Workspace beam_model(const std::string& term, int n, const Vec2& at, const VectorXd& force) {
   std::vector<std::unique_ptr<Term>> terms;
-  terms.push_back(make_term(term, kSection));
+  terms.push_back(make_term(term, kBeamSection));
   terms.push_back(make_point_force(at, force));
   Workspace model;
-  model.add_body("beam", std::make_unique<AncfBeam>(kLength, kHeight, n), kSection,
+  model.add_body("beam", std::make_unique<AncfBeam>(kLength, kHeight, n), kBeamSection,
                  std::move(terms));
   return model;
 }

@@ -106,7 +106,7 @@ TEST(EnergyBalanceInSpace, OfADeployingPlateIsOfOrderTwo) {
 }
 
 /// Returns the energy loss within 20 ms after the first insertion, relative to the strain energy.
-double loss_after_insertion(int n, double h) {
+double loss_in_space(int n, double h) {
   testing::Scene scene = deploying("membrane_assumed", n);
   MotionSettings settings;
   settings.step = h;
@@ -125,8 +125,8 @@ double loss_after_insertion(int n, double h) {
 // (growing_plate_test.cpp): the loss is smaller on finer meshes and does not depend on the step.
 // Powers of multipliers of the old mesh would cause an error of the order of the step.
 TEST(EnergyBalanceInSpace, LosesByInsertionsWhatTheRicherMeshSetsFree) {
-  const double coarse = loss_after_insertion(4, 5e-4), middle = loss_after_insertion(8, 5e-4),
-               fine = loss_after_insertion(16, 5e-4), twice = loss_after_insertion(8, 1e-3);
+  const double coarse = loss_in_space(4, 5e-4), middle = loss_in_space(8, 5e-4),
+               fine = loss_in_space(16, 5e-4), twice = loss_in_space(8, 1e-3);
   std::printf("loss / strain energy: %.2e, %.2e, %.2e with 4, 8, 16 elements; %.2e with 2 h\n",
               coarse, middle, fine, twice);
   EXPECT_LT(middle, 0.6 * coarse);

@@ -18,6 +18,7 @@
 #include "tests/support/errors.h"
 #include "tests/support/fractions.h"
 #include "tests/support/rates.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -28,7 +29,6 @@ using testing::mentions;
 using testing::Polynomial;
 
 constexpr double kLength = 0.7, kHeight = 0.2;
-const PlaneSection kSection{0.05, 2e8, 0.3, 7200};
 
 /// A shape function is lᵃ hᵇ times a polynomial in ξ = x/l and ζ = y/h.
 struct Shape {
@@ -106,7 +106,7 @@ Fractions printed_inverse() {
                     48});
 }
 
-double mass() { return kSection.density * kSection.thickness * kLength * kHeight; }
+double mass() { return kBeamSection.density * kBeamSection.thickness * kLength * kHeight; }
 
 ShapeTable table_of(const AncfBeam& beam, int degree, Tabulate what = Tabulate::position) {
   ShapeTable t;
@@ -130,7 +130,7 @@ double scaled_difference(const MatrixXd& x, const MatrixXd& expected, double sig
 
 MatrixXd computed_mass() {
   const AncfBeam beam(kLength, kHeight, 1);
-  const std::unique_ptr<Term> inertia = make_inertia(kSection);
+  const std::unique_ptr<Term> inertia = make_inertia(kBeamSection);
   inertia->prepare(beam, {}, true);
   Local x;
   x.q = x.v = x.a = LocalRows::Zero(6, 2);
@@ -172,7 +172,7 @@ TEST(AncfBeamMatrices, MassOfRelativeMotionIsPrintedRight) {
   ShapeTable origin;
   beam.locate({0, 0}, Tabulate::position, origin);
   const MatrixXd relative = t.N - VectorXd::Ones(t.N.rows()) * origin.N;
-  const double density = kSection.density * kSection.thickness;
+  const double density = kBeamSection.density * kBeamSection.thickness;
   EXPECT_LT(scaled_difference(density * relative.transpose() * t.weight.asDiagonal() * relative,
                               mass() * with_lengths(printed_relative_mass())),
             1e-13);
@@ -186,7 +186,7 @@ TEST(AncfBeamMatrices, FirstMomentsArePrintedRight) {
   const Polynomial x{{{{1, 0}, 1}}}, y{{{{0, 1}, 1}}};
   const AncfBeam beam(kLength, kHeight, 1);
   const ShapeTable t = table_of(beam, 4);
-  const double density = kSection.density * kSection.thickness;
+  const double density = kBeamSection.density * kBeamSection.thickness;
   VectorXd points_x(t.weight.size()), points_y(t.weight.size());
   for (Eigen::Index p = 0; p < t.weight.size(); ++p) {
     points_x[p] = t.material[static_cast<size_t>(p)].x();
@@ -216,7 +216,8 @@ TEST(AncfBeamMatrices, TranslationsAreFoundByTheMass) {
   for (size_t i = 0; i < 6; ++i) EXPECT_EQ(m[i][0] + m[i][3], paper_shapes()[i].p.integral()) << i;
   const AncfBeam beam(kLength, kHeight, 1);
   const ShapeTable t = table_of(beam, 6);
-  const VectorXd mean = kSection.density * kSection.thickness * (t.N.transpose() * t.weight);
+  const VectorXd mean =
+      kBeamSection.density * kBeamSection.thickness * (t.N.transpose() * t.weight);
   ShapeTable origin;
   beam.locate({0, 0}, Tabulate::position, origin);
   const MatrixXd I_u =
@@ -356,9 +357,9 @@ TEST(AncfBeam, RefusesWhatMakesNoSense) {
           "second derivatives");
   ScaleFactors factors;
   factors.stiffness = factors.mass = VectorXd::Ones(4);
-  refused([&] { make_inertia(kSection)->prepare(beam, factors, true); }, "scale factors");
-  refused([&] { make_beam_ecm(kSection)->prepare(beam, factors, true); }, "scale factors");
-  refused([&] { make_membrane(kSection)->prepare(beam, {}, true); }, "four nodes");
+  refused([&] { make_inertia(kBeamSection)->prepare(beam, factors, true); }, "scale factors");
+  refused([&] { make_beam_ecm(kBeamSection)->prepare(beam, factors, true); }, "scale factors");
+  refused([&] { make_membrane(kBeamSection)->prepare(beam, {}, true); }, "four nodes");
   VectorXd load = VectorXd::Ones(2);
   refused([&] { make_edge_load("free_end", load)->prepare(beam, {}, true); }, "one node");
   refused([&] { make_turning_edge_load("free_end", load)->prepare(beam, {}, true); }, "one node");

@@ -15,12 +15,12 @@
 #include "fem/terms.h"
 #include "tests/support/errors.h"
 #include "tests/support/rigid_models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
 
-const PlaneSection kSection{0.05, 2e8, 0.3, 7200};
-constexpr double kHeight = 0.1;
+constexpr double kHeightAtJoints = 0.1;
 
 VectorXd vector(double x, double y) {
   VectorXd out(2);
@@ -29,7 +29,7 @@ VectorXd vector(double x, double y) {
 }
 
 std::unique_ptr<AncfBeam> quarter_arc() {
-  return std::make_unique<AncfBeam>(uniform_nodes(0.9, 6), kHeight,
+  return std::make_unique<AncfBeam>(uniform_nodes(0.9, 6), kHeightAtJoints,
                                     arc_reference(0.9, std::numbers::pi / 2, 6));
 }
 
@@ -39,7 +39,7 @@ Vec2 resultant(std::unique_ptr<Term> load, double* moment = nullptr) {
   std::vector<std::unique_ptr<Term>> terms;
   terms.push_back(std::move(load));
   Workspace model;
-  model.add_body("beam", quarter_arc(), kSection, std::move(terms));
+  model.add_body("beam", quarter_arc(), kBeamSection, std::move(terms));
   model.prepare(0);
   const State x = model.reference();
   VectorXd f;
@@ -62,7 +62,7 @@ TEST(BeamLoads, HaveTheirResultants) {
     area += t.weight.sum();
   }
   EXPECT_NEAR(area, 0.09 * (1 - std::pow(std::numbers::pi / 12, 2) / 12), 1e-6);
-  const Vec2 weight = resultant(make_gravity(kSection, vector(1, -9.81)));
+  const Vec2 weight = resultant(make_gravity(kBeamSection, vector(1, -9.81)));
   EXPECT_NEAR(weight.x(), 7200 * 0.05 * area, 1e-11);
   EXPECT_NEAR(weight.y(), -9.81 * 7200 * 0.05 * area, 1e-11);
   const Vec2 surface = resultant(make_surface_load(vector(3, 4)));
@@ -71,13 +71,14 @@ TEST(BeamLoads, HaveTheirResultants) {
   // A force off the axis at the face of the free end has a moment; the axis is rotated by 90
   // degrees to the left there.
   double moment = 0;
-  const Vec2 force = resultant(make_point_force({0.9, kHeight / 2}, vector(5, -7)), &moment);
+  const Vec2 force =
+      resultant(make_point_force({0.9, kHeightAtJoints / 2}, vector(5, -7)), &moment);
   EXPECT_NEAR(force.x(), 5, 1e-13);
   EXPECT_NEAR(force.y(), -7, 1e-13);
   const double radius = 0.9 / (std::numbers::pi / 2);
-  const Vec2 at(radius - kHeight / 2, radius);
+  const Vec2 at(radius - kHeightAtJoints / 2, radius);
   EXPECT_NEAR(moment, at.x() * -7 - at.y() * 5, 1e-12);
-  const Vec2 mass = resultant(make_point_mass(2, {0.9, kHeight / 2}, vector(0, -9.81)));
+  const Vec2 mass = resultant(make_point_mass(2, {0.9, kHeightAtJoints / 2}, vector(0, -9.81)));
   EXPECT_NEAR(mass.y(), -2 * 9.81, 1e-12);
 }
 
@@ -87,7 +88,7 @@ struct Pair {
   State x;
 
   explicit Pair(std::unique_ptr<Joint> joint, std::unique_ptr<AncfBeam> beam = quarter_arc()) {
-    model.add_body("beam", std::move(beam), kSection, {});
+    model.add_body("beam", std::move(beam), kBeamSection, {});
     testing::add_rigid(model, "hub", {2, {0, 0}, 0.1});
     model.add_joint(std::move(joint));
     x = model.reference();
@@ -147,11 +148,11 @@ TEST(BeamWelds, TakeTheReferenceVectorsOfTheEnd) {
   for (const WeldMode mode :
        {WeldMode::partial, WeldMode::edge, WeldMode::direction, WeldMode::full}) {
     Pair pair(make_edge_weld("weld", "beam", "root", {"hub"}, mode),
-              std::make_unique<AncfBeam>(x, kHeight, nodes));
+              std::make_unique<AncfBeam>(x, kHeightAtJoints, nodes));
     EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);
     Pair driven(make_weld(
                     "weld", "beam", "root", [](double) { return FrameMotion{}; }, mode),
-                std::make_unique<AncfBeam>(x, kHeight, nodes));
+                std::make_unique<AncfBeam>(x, kHeightAtJoints, nodes));
     EXPECT_LT(driven.value(driven.x.q).norm(), 1e-15);
   }
 }
@@ -159,12 +160,12 @@ TEST(BeamWelds, TakeTheReferenceVectorsOfTheEnd) {
 // Joints and springs can be attached to points of a beam, on the axis and off it.
 TEST(BeamMarkers, ArePointsOfTheBeam) {
   Pair pair(make_revolute("hinge", {"hub", {0.45, 0.03}}, {"beam", {0.45, 0.03}}),
-            std::make_unique<AncfBeam>(0.9, kHeight, 5));
+            std::make_unique<AncfBeam>(0.9, kHeightAtJoints, 5));
   EXPECT_LT(pair.value(pair.x.q).norm(), 1e-15);
   pair.model.add_force_element(
-      make_spring("spring", {}, {"beam", {0.9, -kHeight / 2}}, {100, 0, 0}));
+      make_spring("spring", {}, {"beam", {0.9, -kHeightAtJoints / 2}}, {100, 0, 0}));
   pair.model.prepare(0);
-  const double length2 = 0.9 * 0.9 + kHeight * kHeight / 4;
+  const double length2 = 0.9 * 0.9 + kHeightAtJoints * kHeightAtJoints / 4;
   EXPECT_NEAR(pair.model.energies(pair.x).strain, 50 * length2, 1e-12);
   const LocationMotion location = pair.model.location_motion({"beam", {0.3, 0.04}}, pair.x);
   EXPECT_LT((location.position - Vec2(0.3, 0.04)).norm(), 1e-15);
@@ -193,9 +194,9 @@ TEST(BeamHolds, FindNodesByTheirCoordinates) {
 // frame gives it.
 TEST(BeamStart, PlacedBeamsMoveAsRigidBodies) {
   std::vector<std::unique_ptr<Term>> terms;
-  terms.push_back(make_inertia(kSection));
+  terms.push_back(make_inertia(kBeamSection));
   Workspace model;
-  model.add_body("beam", quarter_arc(), kSection, std::move(terms));
+  model.add_body("beam", quarter_arc(), kBeamSection, std::move(terms));
   const FrameMotion f{{0.3, -0.2}, {1, 2}, {0, 0}, 0.8, 3, 0};
   const BodyPoses body_poses = [&](double) { return std::vector<BodyPose>{{"beam", f}}; };
   const State x = start_state(model, {}, 0, Start::rigid, body_poses);

@@ -23,7 +23,6 @@ namespace {
 
 using testing::ShapeSet;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kHeight = 0.1, kLength = 0.9;
 
 std::unique_ptr<Element> plate(ShapeSet shapes, int across = 2, double half_width = 0.05) {
@@ -34,7 +33,7 @@ std::unique_ptr<Element> plate(ShapeSet shapes, int across = 2, double half_widt
 /// Returns a beam along a quarter of a circle that bends to the left.
 std::unique_ptr<Element> arc() {
   return std::make_unique<AncfBeam>(uniform_nodes(kLength, 3), kHeight,
-                                    arc_reference(kLength, kPi / 2, 3));
+                                    arc_reference(kLength, std::numbers::pi / 2, 3));
 }
 
 /// Returns a straight beam whose root is tapered and sheared.
@@ -50,7 +49,7 @@ struct End {
   double angle = 0;
 };
 const End kRoot{"root", {0, 0}}, kFreeEnd{"free_end", {kLength, 0}};
-const End kArcEnd{"free_end", kLength / (kPi / 2) * Vec2(1, 1), kPi / 2};
+const End kArcEnd{"free_end", kLength / (std::numbers::pi / 2) * Vec2(1, 1), std::numbers::pi / 2};
 
 struct Joined {
   std::string name;
@@ -72,13 +71,13 @@ std::vector<Joined> all_kinds() {
   return {
       {"arc_on_arc_partially", arc, arc, kArcEnd, kRoot, 0.7, partial, 3},
       {"arc_on_arc", arc, arc, kRoot, kArcEnd, -2.1, edge, 4},
-      {"arc_on_arc_fully", arc, arc, kArcEnd, kArcEnd, kPi, full, 6},
+      {"arc_on_arc_fully", arc, arc, kArcEnd, kArcEnd, std::numbers::pi, full, 6},
       {"sheared_partially", sheared, arc, kRoot, kArcEnd, 0.7, partial, 3},
       {"sheared_fully", arc, sheared, kArcEnd, kRoot, 0.7, full, 6},
       {"plates_h16", h16, h16, kFreeEnd, kRoot, 0, edge, 3 * 4},
       {"plates_h16_fully", h16, h16, kFreeEnd, kRoot, 0, full, 3 * 8},
-      {"plates_h16_end_to_end", h16, h16, kFreeEnd, kFreeEnd, kPi, full, 3 * 8},
-      {"plates_h12_root_to_root", h12, h12, kRoot, kRoot, -kPi, full, 3 * 6},
+      {"plates_h16_end_to_end", h16, h16, kFreeEnd, kFreeEnd, std::numbers::pi, full, 3 * 8},
+      {"plates_h12_root_to_root", h12, h12, kRoot, kRoot, -std::numbers::pi, full, 3 * 6},
       {"plates_q4", q4, q4, kFreeEnd, kRoot, 0, full, 3 * 2},
       {"plate_on_beam", arc, h16, kArcEnd, kRoot, 1.3, edge, 3 * 4},
       {"cells_on_beam", arc, q4, kArcEnd, kFreeEnd, 1.3, edge, 3 * 2},

@@ -14,6 +14,7 @@
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -21,7 +22,6 @@ namespace {
 using testing::first_difference;
 using testing::ShapeSet;
 
-const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 constexpr int kNx = 4, kNy = 3;
 
 /// A plate of 4 x 3 cells with one factor for each.
@@ -29,7 +29,7 @@ struct Cells {
   AncfPlate plate{2, ShapeSet::q4, testing::uniform_lines(0, 0.01, kNx),
                   testing::uniform_lines(-0.004, 0.005, kNy)};
   ScaleFactors factors;
-  BodyTerm term = make_membrane(kSection);
+  BodyTerm term = make_membrane(kThinSection);
 
   explicit Cells(const std::function<double(int)>& factor) {
     factors.grid = {0, -0.004, 0.01, 0.009, kNx, kNy};
@@ -61,7 +61,7 @@ double spread(int c) { return std::pow(10.0, -4 + 4.0 * c / (kNx * kNy - 1)); }
 
 TEST(Cells, AtRestHaveTheStiffnessOfTheDesignProblem) {
   const Cells cells(spread);
-  const auto k = q4_stiffness(kSection, 0.0025, 0.003);
+  const auto k = q4_stiffness(kThinSection, 0.0025, 0.003);
   // The corners are numbered around the cell in q4_stiffness() and column by column in the element.
   constexpr std::array<std::array<int, 2>, 4> kAround = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
   const auto there = [&](int corner) {
@@ -159,7 +159,7 @@ TEST(Cells, ThatAreVoidDoNotTurnInsideOut) {
     if (factor == 1.0) {
       EXPECT_LT(along, 0);
     } else {
-      EXPECT_GT(along, 0.9 * kSection.youngs_modulus * kSection.thickness);
+      EXPECT_GT(along, 0.9 * kThinSection.youngs_modulus * kThinSection.thickness);
     }
   }
 }

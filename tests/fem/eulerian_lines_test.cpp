@@ -10,14 +10,13 @@
 #include "fem/terms/densities.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
 
 using testing::first_difference;
 using testing::ShapeSet;
-
-const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 
 /// One element (or two along m) of which all lines are free, and a motion of all its unknowns.
 struct FreePlate {
@@ -73,17 +72,19 @@ struct FreePlate {
   }
 };
 
-struct Case {
+struct LineMotion {
   int dim;
   ShapeSet shapes;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const LineMotion& c, std::ostream* out) {
   *out << c.dim << (c.shapes == ShapeSet::h12 ? "d_h12" : "d_h16");
 }
-class EulerianLines : public ::testing::TestWithParam<Case> {};
+class EulerianLines : public ::testing::TestWithParam<LineMotion> {};
 INSTANTIATE_TEST_SUITE_P(All, EulerianLines,
-                         ::testing::Values(Case{2, ShapeSet::h12}, Case{2, ShapeSet::h16},
-                                           Case{3, ShapeSet::h12}, Case{3, ShapeSet::h16}));
+                         ::testing::Values(LineMotion{2, ShapeSet::h12},
+                                           LineMotion{2, ShapeSet::h16},
+                                           LineMotion{3, ShapeSet::h12},
+                                           LineMotion{3, ShapeSet::h16}));
 
 /// Returns the largest row sum of the difference relative to the one of the expected matrix.
 double relative(const MatrixXd& is, const MatrixXd& should) {
@@ -92,7 +93,7 @@ double relative(const MatrixXd& is, const MatrixXd& should) {
 
 TEST_P(EulerianLines, ElasticForcesAreTheGradientOfTheEnergy) {
   FreePlate x(GetParam().dim, GetParam().shapes, {0.1, 0.18});
-  const MembraneDensity density(kSection);
+  const MembraneDensity density(kThinSection);
   const VectorXd q = x.motion.q(0.3), zero = VectorXd::Zero(x.n());
   const auto locations = x.locations(0);
   const auto energy = [&](const VectorXd& at) {
@@ -168,7 +169,7 @@ TEST_P(EulerianLines, PrescribedLinesAreTheSameElement) {
   };
   const double time = 0.4;
   AncfPlate prescribed(dim, GetParam().shapes, {drive(0), drive(1)}, {drive(2), drive(3)}, time);
-  const auto term = make_inertia(kSection);
+  const auto term = make_inertia(kThinSection);
   const ScaleFactors full;
   term->prepare(prescribed, full, true);
   const Local local = x.local(0, x.motion.q(time), x.motion.v(time), x.motion.a(time));
@@ -238,12 +239,12 @@ TEST(EulerianLinesOfAModel, TangentIsExact) {
     lines[2].free = true;
     std::vector<std::unique_ptr<Term>> terms;
     for (const char* name : {"membrane", "bending", "inertia"})
-      terms.push_back(make_term(name, kSection));
-    terms.push_back(make_gravity(kSection, VectorXd::Constant(3, 2.0)));
+      terms.push_back(make_term(name, kThinSection));
+    terms.push_back(make_gravity(kThinSection, VectorXd::Constant(3, 2.0)));
     Workspace model;
     model.add_body("plate",
                    std::make_unique<AncfPlate>(3, shapes, lines, testing::uniform_lines(0, 0.1, 1)),
-                   kSection, std::move(terms));
+                   kThinSection, std::move(terms));
     const State rest = model.reference();
     const auto n = rest.q.size();
     const testing::SmoothMotion motion(rest.q, 0.02 * model.scales().cwiseInverse(), 7);

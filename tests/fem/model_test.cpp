@@ -80,7 +80,7 @@ TEST(Model, IsBoundAFewTimesWhileItGrows) {
   EXPECT_EQ(copy.n_constraints(), model.n_constraints());
 }
 
-FrameMotion hub(double t) {
+FrameMotion accelerated_hub(double t) {
   FrameMotion f;
   f.angle = 1.3 * t * t;
   f.angle_rate = 2.6 * t;
@@ -105,7 +105,7 @@ class ModelTangent : public ::testing::TestWithParam<ShapeSet> {
     const PlaneSection section{0.01, 1e3, 0.3, 2700};
     model.add_body("plate", std::make_unique<AncfPlate>(testing::swinging_plate(GetParam())),
                    section, all_terms(section));
-    model.add_joint(make_weld("root", "plate", "root", hub, WeldMode::direction));
+    model.add_joint(make_weld("root", "plate", "root", accelerated_hub, WeldMode::direction));
     model.add_joint(std::make_unique<Distance>());
     const State reference = model.reference();
     x = testing::SmoothMotion(reference.q, 0.05 * model.scales().cwiseInverse(), 2).state(0.37);

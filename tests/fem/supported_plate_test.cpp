@@ -19,7 +19,7 @@
 namespace flexmorph::fem {
 namespace {
 
-const PlaneSection kSection{0.02, 3e5, 0.3, 0};
+const PlaneSection kSoftPlate{0.02, 3e5, 0.3, 0};
 
 std::vector<HeldUnknown> clamp_left(const Grid& g) {
   std::vector<HeldUnknown> held;
@@ -40,7 +40,7 @@ VectorXd random_factors(const Grid& g, unsigned seed) {
 Eigen::SparseMatrix<double> assembled(const StaticSolver& solver, const VectorXd& factor,
                                       const std::vector<signed char>& outside) {
   const Grid& g = solver.grid();
-  const auto cell = q4_stiffness(kSection, g.dx(), g.dy());
+  const auto cell = q4_stiffness(kSoftPlate, g.dx(), g.dy());
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < g.nx; ++i)
     for (int j = 0; j < g.ny; ++j) {
@@ -70,7 +70,7 @@ TEST(StaticSolver, AgreesWithAnotherFactorization) {
   std::vector<HeldUnknown> held;
   for (int i = 0; i <= 5; ++i) held.push_back({g.node(i, g.ny), 1});
   held.push_back({g.node(2, g.ny), 0});
-  StaticSolver solver(g, kSection, held, outside);
+  StaticSolver solver(g, kSoftPlate, held, outside);
   int nodes = 0;
   for (int i = 0; i <= g.nx; ++i)
     for (int j = 0; j <= g.ny; ++j) nodes += i <= 5 || j <= 4 ? 1 : 0;
@@ -110,7 +110,7 @@ TEST(StaticSolver, AgreesWithAnotherFactorization) {
 TEST(StaticSolver, PassesThePatchTest) {
   const Grid g{.width = 2, .height = 1, .nx = 10, .ny = 6};
   StaticSolver solver(
-      g, kSection,
+      g, kSoftPlate,
       std::vector<HeldUnknown>{{g.node(0, 0), 0}, {g.node(0, 0), 1}, {g.node(g.nx, 0), 1}});
   solver.factorize(VectorXd::Ones(g.n_cells()));
   MatrixXd u = MatrixXd::Zero(1, solver.n_unknowns());
@@ -121,13 +121,13 @@ TEST(StaticSolver, PassesThePatchTest) {
     if (j > 0) u(0, solver.row(g.node(0, j), 0)) -= share;
   }
   solver.solve(u);
-  const double strain = pull / (kSection.youngs_modulus * kSection.thickness * g.height);
+  const double strain = pull / (kSoftPlate.youngs_modulus * kSoftPlate.thickness * g.height);
   for (int i = 0; i <= g.nx; ++i)
     for (int j = 0; j <= g.ny; ++j)
       for (int c = 0; c < 2; ++c) {
         const int row = solver.row(g.node(i, j), c);
         const Vec2 X = g.node_position(i, j);
-        const double exact = c == 0 ? strain * X.x() : -kSection.poisson_ratio * strain * X.y();
+        const double exact = c == 0 ? strain * X.x() : -kSoftPlate.poisson_ratio * strain * X.y();
         if (row < 0) continue;
         EXPECT_NEAR(u(0, row), exact, 1e-12 * strain * g.width);
       }
@@ -137,15 +137,15 @@ TEST(StaticSolver, PassesThePatchTest) {
 // ends, which the 0.5 % allow for.
 TEST(StaticSolver, CantileverDeflectsLikeABeam) {
   const Grid g{.width = 10, .height = 1, .nx = 200, .ny = 20};
-  StaticSolver solver(g, kSection, clamp_left(g));
+  StaticSolver solver(g, kSoftPlate, clamp_left(g));
   solver.factorize(VectorXd::Ones(g.n_cells()));
   MatrixXd u = MatrixXd::Zero(1, solver.n_unknowns());
   const int tip = solver.row(g.node(g.nx, g.ny / 2), 1);
   for (int j = 0; j <= g.ny; ++j)
     u(0, solver.row(g.node(g.nx, j), 1)) = 1.0 / g.ny * (j == 0 || j == g.ny ? 0.5 : 1);
   solver.solve(u);
-  const double EI = kSection.youngs_modulus * kSection.thickness / 12;
-  const double GA = kSection.youngs_modulus / 2.6 * kSection.thickness;
+  const double EI = kSoftPlate.youngs_modulus * kSoftPlate.thickness / 12;
+  const double GA = kSoftPlate.youngs_modulus / 2.6 * kSoftPlate.thickness;
   const double beam = std::pow(g.width, 3) / (3 * EI) + g.width / (5. / 6 * GA);
   EXPECT_NEAR(u(0, tip), beam, 0.005 * beam);
 }
@@ -154,12 +154,12 @@ TEST(StaticSolver, CantileverDeflectsLikeABeam) {
 TEST(StaticSolver, RollersAreASymmetry) {
   const Grid whole{.x0 = -2, .width = 4, .height = 1, .nx = 40, .ny = 10};
   const Grid half{.width = 2, .height = 1, .nx = 20, .ny = 10};
-  StaticSolver two(whole, kSection,
+  StaticSolver two(whole, kSoftPlate,
                    std::vector<HeldUnknown>{
                        {whole.node(0, 0), 1}, {whole.node(40, 0), 1}, {whole.node(20, 0), 0}});
   std::vector<HeldUnknown> rollers{{half.node(20, 0), 1}};
   for (int j = 0; j <= 10; ++j) rollers.push_back({half.node(0, j), 0});
-  StaticSolver one(half, kSection, rollers);
+  StaticSolver one(half, kSoftPlate, rollers);
   two.factorize(VectorXd::Ones(whole.n_cells()));
   one.factorize(VectorXd::Ones(half.n_cells()));
   MatrixXd u2 = MatrixXd::Zero(1, two.n_unknowns()), u1 = MatrixXd::Zero(1, one.n_unknowns());
@@ -176,14 +176,15 @@ TEST(StaticSolver, RollersAreASymmetry) {
 
 TEST(StaticSolver, RefusesPlatesThatFloat) {
   const Grid g{.width = 2, .height = 1, .nx = 8, .ny = 4};
-  StaticSolver turning(g, kSection, std::vector<HeldUnknown>{{g.node(0, 0), 0}, {g.node(0, 0), 1}});
+  StaticSolver turning(g, kSoftPlate,
+                       std::vector<HeldUnknown>{{g.node(0, 0), 0}, {g.node(0, 0), 1}});
   EXPECT_THROW(turning.factorize(VectorXd::Ones(g.n_cells())), Error);
-  StaticSolver held(g, kSection, clamp_left(g));
+  StaticSolver held(g, kSoftPlate, clamp_left(g));
   EXPECT_NO_THROW(held.factorize(VectorXd::Ones(g.n_cells())));
   VectorXd wrong = VectorXd::Ones(g.n_cells());
   wrong[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(held.factorize(wrong), Error);
-  EXPECT_THROW(StaticSolver(g, kSection, std::vector<HeldUnknown>{{1000, 0}}), Error);
+  EXPECT_THROW(StaticSolver(g, kSoftPlate, std::vector<HeldUnknown>{{1000, 0}}), Error);
 }
 
 // Every node occurs once, and the first separator, the column of nodes in the middle, comes after
@@ -274,7 +275,7 @@ TEST(SupernodalFactor, NamesTheColumnWithoutAPositivePivotAndRecovers) {
 // Equal matrices must give equal bits, independent of previous factorizations.
 TEST(StaticSolver, RepeatsItselfBitForBit) {
   const Grid g{.width = 3, .height = 1, .nx = 30, .ny = 10};
-  StaticSolver solver(g, kSection, clamp_left(g));
+  StaticSolver solver(g, kSoftPlate, clamp_left(g));
   std::srand(3);
   const MatrixXd loads = MatrixXd::Random(4, solver.n_unknowns());
   MatrixXd first = loads, again = loads;
@@ -290,7 +291,7 @@ TEST(StaticSolver, RepeatsItselfBitForBit) {
 // with K assembled by cells.
 TEST(StaticSolver, SolvesWhatWasAskedOnALargerMesh) {
   const Grid g{.width = 2, .height = 1, .nx = 60, .ny = 31};
-  StaticSolver solver(g, kSection, clamp_left(g));
+  StaticSolver solver(g, kSoftPlate, clamp_left(g));
   const VectorXd factor = random_factors(g, 4);
   solver.factorize(factor);
   const Eigen::SparseMatrix<double> K = assembled(solver, factor, {});

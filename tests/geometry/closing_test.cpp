@@ -15,11 +15,11 @@
 namespace flexmorph {
 namespace {
 
-std::vector<Vec2> box(double x0, double y0, double x1, double y1) {
+std::vector<Vec2> corners_of_box(double x0, double y0, double x1, double y1) {
   return corners_of({{x0, y0}, {x1, y1}});
 }
 
-const Region kSheet{box(-10, -10, 10, 10), {}};
+const Region kSheet{corners_of_box(-10, -10, 10, 10), {}};
 
 std::vector<Region> united(const std::vector<std::vector<Vec2>>& polygons) {
   return unite(polygons, kSheet, {});
@@ -47,7 +47,8 @@ double sharpest(const std::vector<Vec2>& ring, double arc) {
 
 // A corner of 90 degrees is filled by r² (1 - π/4). All other vertices do not move.
 TEST(Fillets, FillCorners) {
-  const std::vector<Region> tee = united({box(-3, 0, 3, 1), box(-0.5, 1, 0.5, 4)});
+  const std::vector<Region> tee =
+      united({corners_of_box(-3, 0, 3, 1), corners_of_box(-0.5, 1, 0.5, 4)});
   ASSERT_EQ(tee.size(), 1u);
   const double r = 0.8, filled = 2 * r * r * (1 - std::numbers::pi / 4);
   const std::vector<Region> found = with_fillets(tee, kSheet, {r, 0.9}, 1e-4);
@@ -65,7 +66,8 @@ TEST(Fillets, CloseGapsAndThickenBlades) {
   const double r = 0.5;
   for (const double gap : {0.6, 1.4}) {
     const std::vector<Region> fork =
-        united({box(-3, 0, -2, 5), box(-2, 0, 3, 1), box(-2, 1 + gap, 3, 3 + gap)});
+        united({corners_of_box(-3, 0, -2, 5), corners_of_box(-2, 0, 3, 1),
+                corners_of_box(-2, 1 + gap, 3, 3 + gap)});
     const std::vector<Region> found = with_fillets(fork, kSheet, {r, 0.9}, 1e-4);
     const double added = area(found) - area(fork);
     if (gap < 2 * r)
@@ -90,7 +92,8 @@ TEST(Fillets, CloseGapsAndThickenBlades) {
 
 // Without a radius nothing changes. Holes are preserved.
 TEST(Fillets, KeepWhatTheyDoNotFill) {
-  const std::vector<std::vector<Vec2>> outer = {box(0, 0, 6, 4)}, hole = {box(2, 1, 4, 3)};
+  const std::vector<std::vector<Vec2>> outer = {corners_of_box(0, 0, 6, 4)},
+                                       hole = {corners_of_box(2, 1, 4, 3)};
   const std::vector<Region> plate = unite(outer, kSheet, hole);
   ASSERT_EQ(plate.size(), 1u);
   const std::vector<Region> same = with_fillets(plate, kSheet, {0, 0.9}, 1e-4);
@@ -105,7 +108,7 @@ TEST(Fillets, KeepWhatTheyDoNotFill) {
 // The material nearly reaches the corners of the domain, and no fragments may remain there: every
 // connected region contains material of the given outline.
 TEST(Fillets, LeaveNoFlecksAtCorners) {
-  const Region domain{box(0, -5, 53, 5), {}};
+  const Region domain{corners_of_box(0, -5, 53, 5), {}};
   for (int k = 0; k < 20; ++k) {
     const double top = 4.2 + 0.03 * k;
     const std::vector<Vec2> bar = {{0, -4}, {53, -4}, {53, 3}, {20, top + 0.2}, {0, top}};
@@ -117,10 +120,10 @@ TEST(Fillets, LeaveNoFlecksAtCorners) {
 // A round end that exceeds the border by a tenth of the tolerance remains attached to the border
 // along the chord that the border cuts off.
 TEST(Fillets, StayAttachedToTheBorder) {
-  const Region domain{box(0, -10, 20, 10), {}};
+  const Region domain{corners_of_box(0, -10, 20, 10), {}};
   constexpr double kTolerance = 1e-2, kBeyond = 0.1 * kTolerance, kRadius = 2;
   const std::vector<std::vector<Vec2>> bar = {circle_within({kRadius - kBeyond, 0}, kRadius, 1e-4),
-                                              box(2, -2, 20, 2)};
+                                              corners_of_box(2, -2, 20, 2)};
   const std::vector<Region> given = unite(bar, domain, {});
   const std::vector<Region> found = with_fillets(given, domain, {1.6, 1.8}, kTolerance);
   ASSERT_EQ(found.size(), 1u);
@@ -135,7 +138,7 @@ TEST(Fillets, StayAttachedToTheBorder) {
   EXPECT_NEAR(low, -half, 0.1 * half);
 }
 
-// A circle keeps the sides that its tolerance needs, a box keeps its corners.
+// A circle keeps the sides that its tolerance needs, a corners_of_box keeps its corners.
 TEST(Simplified, RingsKeepToTheTolerance) {
   const std::vector<Vec2> fine = circle_within({1, 2}, 6, 1e-4);
   const std::vector<Vec2> coarse = simplified(fine, 0.02);
@@ -146,7 +149,7 @@ TEST(Simplified, RingsKeepToTheTolerance) {
       near = std::min(near, distance({coarse[k], coarse[(k + 1) % coarse.size()]}, p));
     EXPECT_LE(near, 0.02);
   }
-  std::vector<Vec2> corners = box(0, 0, 2, 1);
+  std::vector<Vec2> corners = corners_of_box(0, 0, 2, 1);
   corners.insert(corners.begin() + 1, {1, 0});
   std::reverse(corners.begin(), corners.end());
   const std::vector<Vec2> kept = simplified(corners, 1e-3);
@@ -168,7 +171,7 @@ TEST(Coverage, OfPolygonsIsExact) {
   EXPECT_EQ(f[grid.cell(0, 7)], 0);
   // The diagonal has a slope of 2/3; it covers a third of the first cell.
   EXPECT_NEAR(f[grid.cell(0, 0)], 1. / 3, 1e-12);
-  Region holed{box(-1, 0, 5, 4), {circle_within({2, 2}, 1.1, 1e-3)}};
+  Region holed{corners_of_box(-1, 0, 5, 4), {circle_within({2, 2}, 1.1, 1e-3)}};
   std::reverse(holed.holes[0].begin(), holed.holes[0].end());
   const std::vector<Region> two = {holed};
   const VectorXd g = area_fractions(grid, two);
@@ -181,9 +184,9 @@ TEST(Coverage, OfPolygonsIsExact) {
 // Fillets that are small relative to the width of fillings leave no thin strips along the border
 // where a bar crosses it at an angle: the corners of the part there are the corners of the bar.
 TEST(Fillets, LeaveNoWhiskersAlongTheBorder) {
-  const Region sheet{box(0, -5, 10, 5), {}};
+  const Region sheet{corners_of_box(0, -5, 10, 5), {}};
   const std::vector<std::vector<Vec2>> bars = {{{-1, -0.8}, {4, -1}, {4, 1}, {-1, 0.8}},
-                                               box(4, -5, 5, 5)};
+                                               corners_of_box(4, -5, 5, 5)};
   const std::vector<Region> given = unite(bars, sheet, {});
   ASSERT_EQ(given.size(), 1u);
   const double r = 0.1, tolerance = 1e-3;

@@ -19,7 +19,6 @@ namespace flexmorph {
 namespace {
 
 using Polygon = std::vector<Vec2>;
-constexpr double kPi = std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Polygon box(double x0, double y0, double x1, double y1) {
@@ -27,9 +26,10 @@ Polygon box(double x0, double y0, double x1, double y1) {
 }
 const Polygon kDomain = box(-5, -5, 5, 5);
 
-Polygon circle(const Vec2& center, double radius, int n, double from = 0, double to = 2 * kPi) {
+Polygon circle(const Vec2& center, double radius, int n, double from = 0,
+               double to = 2 * std::numbers::pi) {
   Polygon out;
-  const bool closed = to - from > 2 * kPi - 1e-9;
+  const bool closed = to - from > 2 * std::numbers::pi - 1e-9;
   for (int k = 0; k < n; ++k) {
     const double a = from + (to - from) * k / (closed ? n : n - 1);
     out.push_back(center + radius * Vec2(std::cos(a), std::sin(a)));
@@ -94,7 +94,7 @@ TEST(SmallestFeature, OfAnHourglassIsTheDistanceOfItsArcs) {
   // A block has two round voids at its sides, 0.3 apart; the polygons are within the sagitta of the
   // arcs.
   const int n = 160;
-  const double sagitta = 1 - std::cos(kPi / n);
+  const double sagitta = 1 - std::cos(std::numbers::pi / n);
   const Features f =
       features({box(-2, -1, 2, 1)}, kDomain, {circle({0, 1.15}, 1, n), circle({0, -1.15}, 1, n)});
   EXPECT_NEAR(f.solid, 0.3, 4 * sagitta);
@@ -107,10 +107,11 @@ TEST(SmallestFeature, OfATaperedBarIsItsThinEnd) {
   // A free bar with a round tip is the hull of two discs.
   const double R = 0.2, r = 0.05, distance = 2;
   const double lean = std::asin((R - r) / distance);
-  Polygon hull = circle({0, 0}, R, 60, kPi / 2 - lean, 1.5 * kPi + lean);
-  const Polygon tip = circle({distance, 0}, r, 40, 1.5 * kPi + lean, 2.5 * kPi - lean);
+  Polygon hull = circle({0, 0}, R, 60, std::numbers::pi / 2 - lean, 1.5 * std::numbers::pi + lean);
+  const Polygon tip =
+      circle({distance, 0}, r, 40, 1.5 * std::numbers::pi + lean, 2.5 * std::numbers::pi - lean);
   hull.insert(hull.end(), tip.begin(), tip.end());
-  EXPECT_NEAR(features({hull}).solid, 2 * r, 2 * r * (1 - std::cos(kPi / 78)));
+  EXPECT_NEAR(features({hull}).solid, 2 * r, 2 * r * (1 - std::cos(std::numbers::pi / 78)));
   // For a free bar cut square at w = 0.1, the disc touches the end and both sides, whose slope is
   // b: r = w/2 cos b / (1 - sin b).
   const double slope = std::atan(0.05);
@@ -122,7 +123,7 @@ TEST(SmallestFeature, OfARingIsItsWallAndItsHole) {
   const std::vector<Region> ring = unite(std::vector<Polygon>{circle({0, 0}, 1, n)}, {kDomain, {}},
                                          std::vector<Polygon>{circle({0, 0}, 0.7, n)});
   const Features f = smallest_features(ring, {kDomain, {}});
-  const double sagitta = 1 - std::cos(kPi / n);
+  const double sagitta = 1 - std::cos(std::numbers::pi / n);
   EXPECT_NEAR(f.solid, 0.3, 2 * sagitta);
   EXPECT_NEAR(f.gap, 1.4, 2 * sagitta);
   // A hole is near an edge.

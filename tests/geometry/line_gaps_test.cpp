@@ -15,11 +15,11 @@ namespace {
 
 constexpr double kLimit = 0.5;
 const Segment kLine{{0, -1}, {0, 1}};
-const Region kDomain{{{0, -1}, {4, -1}, {4, 1}, {0, 1}}, {}};
+const Region kRectangle{{{0, -1}, {4, -1}, {4, 1}, {0, 1}}, {}};
 
 std::vector<LengthScaleViolation> gaps(const std::vector<std::vector<Vec2>>& polygons) {
   const Segment lines[] = {kLine};
-  return line_gaps(unite(polygons, kDomain, {}), lines, kLimit);
+  return line_gaps(unite(polygons, kRectangle, {}), lines, kLimit);
 }
 
 TEST(LineGaps, OfCornersAndSidesAreTheirDistances) {
@@ -44,7 +44,7 @@ TEST(LineGaps, AreNotSeenThroughMaterial) {
       gaps({{{0.1, -0.5}, {0.2, -0.5}, {0.2, 0.5}, {0.1, 0.5}}, {{0.3, 0}, {1, -0.1}, {1, 0.1}}})
           .size(),
       1u);
-  const Region frame{kDomain.outer, {{{0.1, -0.3}, {0.1, 0.3}, {0.7, 0.3}, {0.7, -0.3}}}};
+  const Region frame{kRectangle.outer, {{{0.1, -0.3}, {0.1, 0.3}, {0.7, 0.3}, {0.7, -0.3}}}};
   const Segment lines[] = {kLine};
   EXPECT_TRUE(line_gaps({&frame, 1}, lines, kLimit).empty());
 }
@@ -53,7 +53,7 @@ TEST(LineGaps, EndWhereTheLineEnds) {
   const Segment lines[] = {{{0, -1}, {0, 0.05}}};
   const std::vector<std::vector<Vec2>> above = {{{0.1, 0.2}, {1, 0.1}, {1, 0.3}}};
   EXPECT_EQ(gaps(above).size(), 1u);
-  EXPECT_TRUE(line_gaps(unite(above, kDomain, {}), lines, kLimit).empty());
+  EXPECT_TRUE(line_gaps(unite(above, kRectangle, {}), lines, kLimit).empty());
 }
 
 // Of an outline and a line of the frame of the domain, the vertex of the outline with the smallest

@@ -11,7 +11,6 @@
 namespace flexmorph {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kTolerance = 3e-5;
 using Ring = std::vector<Vec2>;
 
@@ -60,7 +59,7 @@ int lines_in(const CurveRing& ring) {
 }
 
 /// Returns a bar whose sides are convex or concave.
-Component bar(const Vec2& center, double angle, double end, double middle) {
+Component curved_bar(const Vec2& center, double angle, double end, double middle) {
   return {
       .center = center, .half_length = 0.04, .angle = angle, .c1 = end, .c2 = end, .c3 = middle};
 }
@@ -68,8 +67,8 @@ Component bar(const Vec2& center, double angle, double end, double middle) {
 /// Returns a link of two bars and two eyes with bores that a side of the domain cuts.
 std::vector<Region> link(double mirror = 1) {
   std::vector<Ring> all;
-  for (const Component& c : {bar({0.05, mirror * 0.004}, mirror * 0.2, 0.003, 0.005),
-                             bar({0.05, mirror * -0.003}, mirror * -0.25, 0.004, 0.003)})
+  for (const Component& c : {curved_bar({0.05, mirror * 0.004}, mirror * 0.2, 0.003, 0.005),
+                             curved_bar({0.05, mirror * -0.003}, mirror * -0.25, 0.004, 0.003)})
     all.push_back(outline_within(c, 1e-3, 0.5 * kTolerance));
   std::vector<Ring> bores;
   for (const double x : {0.012, 0.088}) {
@@ -92,7 +91,7 @@ TEST(OutlineCurves, OfADiscIsACircleOfItsRadius) {
     EXPECT_NEAR((out.holes[0][0].center - center).norm(), 0, 1e-13);
     EXPECT_EQ(lines_in(out.outer), 4);
     EXPECT_EQ(out.outer.size(), 4u);
-    EXPECT_NEAR(area(out), 0.03 - kPi * 0.008 * 0.008, 1e-15);
+    EXPECT_NEAR(area(out), 0.03 - std::numbers::pi * 0.008 * 0.008, 1e-15);
   }
 }
 
@@ -103,7 +102,7 @@ TEST(OutlineCurves, OfARoundedRectangleAreFourLinesAndFourArcs) {
   const Vec2 centers[] = {{w - r, r}, {w - r, h - r}, {r, h - r}, {r, r}};
   for (int corner = 0; corner < 4; ++corner)
     for (int k = 0; k <= 16; ++k) {
-      const double angle = (corner - 1) * kPi / 2 + k * kPi / 32;
+      const double angle = (corner - 1) * std::numbers::pi / 2 + k * std::numbers::pi / 32;
       ring.push_back(centers[corner] + r * Vec2(std::cos(angle), std::sin(angle)));
     }
   for (std::size_t first = 0; first < ring.size(); first += 5) {
@@ -112,11 +111,11 @@ TEST(OutlineCurves, OfARoundedRectangleAreFourLinesAndFourArcs) {
     const CurvedRegion out = curves_of({&plate, 1}, kTolerance)[0];
     EXPECT_EQ(out.outer.size(), 8u);
     EXPECT_EQ(lines_in(out.outer), 4);
-    EXPECT_NEAR(area(out), w * h - (4 - kPi) * r * r, 1e-14);
+    EXPECT_NEAR(area(out), w * h - (4 - std::numbers::pi) * r * r, 1e-14);
     for (const OutlineCurve& c : out.outer)
       if (!c.is_line()) {
         EXPECT_NEAR(c.radius, r, 1e-12);
-        EXPECT_NEAR(c.sweep, kPi / 2, 1e-9);
+        EXPECT_NEAR(c.sweep, std::numbers::pi / 2, 1e-9);
       }
     expect_closed(out);
   }
@@ -128,7 +127,7 @@ TEST(OutlineCurves, OfALargeCircleEndAtItsVertices) {
   const double r = 4;
   Ring ring = {{0.1, -0.1}};
   for (int k = 0; k <= 20; ++k) {
-    const double angle = 0.5 * kPi + 0.002 * k, off = k == 20 ? 3e-9 : 0;
+    const double angle = 0.5 * std::numbers::pi + 0.002 * k, off = k == 20 ? 3e-9 : 0;
     ring.push_back(Vec2(0.1, -r) + (r + off) * Vec2(std::cos(angle), std::sin(angle)));
   }
   ring.push_back({ring.back().x(), -0.1});
@@ -143,7 +142,8 @@ TEST(OutlineCurves, OfALargeCircleEndAtItsVertices) {
 TEST(OutlineCurves, OfAHexagonAreItsSides) {
   Ring ring;
   for (int k = 0; k < 6; ++k)
-    ring.push_back(0.01 * Vec2(std::cos(k * kPi / 3), std::sin(k * kPi / 3)));
+    ring.push_back(0.01 *
+                   Vec2(std::cos(k * std::numbers::pi / 3), std::sin(k * std::numbers::pi / 3)));
   const Region plate{ring, {}};
   const CurvedRegion out = curves_of({&plate, 1}, kTolerance)[0];
   EXPECT_EQ(out.outer.size(), 6u);
@@ -159,7 +159,7 @@ TEST(OutlineCurves, MeetWhereAnArcIsCut) {
     ASSERT_EQ(out.outer.size(), 2u);
     EXPECT_EQ(lines_in(out.outer), 1);
     const double half = std::acos(height / 0.01);
-    EXPECT_NEAR(area(out), 1e-4 * (kPi - half + 0.5 * std::sin(2 * half)), 1e-14);
+    EXPECT_NEAR(area(out), 1e-4 * (std::numbers::pi - half + 0.5 * std::sin(2 * half)), 1e-14);
     for (const OutlineCurve& c : out.outer) EXPECT_NEAR(c.from.y(), height, 1e-15);
   }
   const std::vector<Ring> two = {circle_within({0, 0}, 0.01, kTolerance),
@@ -170,7 +170,7 @@ TEST(OutlineCurves, MeetWhereAnArcIsCut) {
   const double d = std::hypot(0.013, 0.002), a = (d * d + 1e-4 - 6.4e-5) / (2 * d), b = d - a;
   const double alpha = std::acos(a / 0.01), beta = std::acos(b / 0.008);
   EXPECT_NEAR(area(out),
-              kPi * (1e-4 + 6.4e-5) - 1e-4 * (alpha - 0.5 * std::sin(2 * alpha)) -
+              std::numbers::pi * (1e-4 + 6.4e-5) - 1e-4 * (alpha - 0.5 * std::sin(2 * alpha)) -
                   6.4e-5 * (beta - 0.5 * std::sin(2 * beta)),
               1e-14);
 }
@@ -178,7 +178,7 @@ TEST(OutlineCurves, MeetWhereAnArcIsCut) {
 // Curves stay within the tolerance of their polygon and of a finer one, and their number is less
 // than half of the sides.
 TEST(OutlineCurves, OfComponentsStayWithinTheTolerance) {
-  const Component c = bar({0, 0}, 0.3, 0.004, 0.006);
+  const Component c = curved_bar({0, 0}, 0.3, 0.004, 0.006);
   const Region coarse{outline_within(c, 1e-3, 0.5 * kTolerance), {}};
   const CurvedRegion out = curves_of({&coarse, 1}, kTolerance)[0];
   expect_closed(out);
@@ -237,7 +237,7 @@ TEST(OutlineCurves, OfADropKeepItsCorner) {
   Ring ring;
   constexpr int kVertices = 400;
   for (int k = 0; k < kVertices; ++k) {
-    const double t = 2 * kPi * k / kVertices;
+    const double t = 2 * std::numbers::pi * k / kVertices;
     ring.emplace_back(-0.02 * std::cos(t),
                       0.01 * std::sin(t) * (1 - 0.4 * std::cos(t)) * std::sin(0.5 * t));
   }
@@ -271,7 +271,7 @@ TEST(OutlineCurves, OfSidesWithVerticesOnThemAreOneLine) {
 // Slits far below the tolerance remain open, and curves do not cross.
 TEST(OutlineCurves, DoNotCrossInSlits) {
   std::vector<Ring> two;
-  const Component c = bar({0.05, 0}, 0, 0.003, 0.003);
+  const Component c = curved_bar({0.05, 0}, 0, 0.003, 0.003);
   for (const double y : {0.0, 0.00600001}) {
     Component moved = c;
     moved.center.y() = y;
@@ -297,7 +297,7 @@ TEST(OutlineCurves, OfOutlinesThatTouchThemselvesHaveBores) {
   const std::vector<Region> regions = unite({&plate, 1}, {plate, {}}, voids);
   const std::vector<CurvedRegion> out = curves_of(regions, kTolerance);
   ASSERT_EQ(out.size(), 1u);
-  EXPECT_NEAR(area(out), 0.005 - 2e-4 - kPi * 1e-4, 1e-14);
+  EXPECT_NEAR(area(out), 0.005 - 2e-4 - std::numbers::pi * 1e-4, 1e-14);
 }
 
 TEST(OutlineCurves, RefusesABadTolerance) {

@@ -18,7 +18,7 @@ using Kind = TdfSettings::Kind;
 
 const Grid kGrid{.x0 = -0.1, .y0 = 0.2, .width = 2, .height = 1, .nx = 60, .ny = 30};
 
-TdfSettings settings(Kind kind) {
+TdfSettings union_settings(Kind kind) {
   TdfSettings s;
   s.kind = kind;
   s.band = kind == Kind::paper ? 0.4 : 1.5 * kGrid.dx();
@@ -66,7 +66,7 @@ TEST_P(EveryUnion, CullingLosesNothing) {
     // lines x = constant and y = constant of the frame are parallel to the grid
     design[1].angle = 0;
     design[2].angle = std::acos(0.0);
-    const TdfSettings s = settings(GetParam());
+    const TdfSettings s = union_settings(GetParam());
     UnionTdf tdf(kGrid, s);
     tdf.evaluate(design);
     const VectorXd expected = brute_force(design, s);
@@ -78,7 +78,7 @@ TEST_P(EveryUnion, CullingLosesNothing) {
 }
 
 TEST_P(EveryUnion, NodesNoComponentReachesAreVoid) {
-  const TdfSettings s = settings(GetParam());
+  const TdfSettings s = union_settings(GetParam());
   UnionTdf tdf(kGrid, s);
   VectorXd gradient;
   tdf.evaluate({});
@@ -96,7 +96,7 @@ TEST_P(EveryUnion, NodesNoComponentReachesAreVoid) {
 
 // The bounds are max <= KS <= max + log(n)/λ.
 TEST(SmoothMaximum, StaysBetweenItsBounds) {
-  const TdfSettings s = settings(Kind::distance);
+  const TdfSettings s = union_settings(Kind::distance);
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const std::vector<Component> design = random_design(seed);
     UnionTdf tdf(kGrid, s);
@@ -119,7 +119,7 @@ TEST(SmoothMaximum, StaysBetweenItsBounds) {
 }
 
 TEST(SmoothMaximum, OfCoincidentComponentsIsLogTwoHigher) {
-  const TdfSettings s = settings(Kind::distance);
+  const TdfSettings s = union_settings(Kind::distance);
   const Component c{.center = {0.9, 0.7}, .half_length = 0.4, .angle = 0.3};
   const std::vector<Component> two = {c, c};
   UnionTdf one_tdf(kGrid, s), two_tdf(kGrid, s);
@@ -138,7 +138,7 @@ TEST(SmoothMaximum, OfCoincidentComponentsIsLogTwoHigher) {
 // ε), and one above it is 1e-9 before and after the cut by its φ₂. If the sum were not continuous,
 // φ would jump by exp(λ (cut - φ₁))/λ, about 4e-7 here.
 TEST(SmoothMaximum, IsContinuousWhereComponentsComeIntoReach) {
-  const TdfSettings s = settings(Kind::distance);
+  const TdfSettings s = union_settings(Kind::distance);
   const double g = 0.1, cut = -s.band - 10 / s.sharpness;
   const Vec2 node = kGrid.node_position(30, 15);
   std::vector<Component> bars(2, {.half_length = 5, .c1 = g, .c2 = g, .c3 = g});
@@ -159,7 +159,7 @@ TEST(SmoothMaximum, IsContinuousWhereComponentsComeIntoReach) {
 // the second bar, although small, must equal differences of the first derivative from the beginning
 // of the reach.
 TEST(SmoothMaximum, BendsOnlyGraduallyWhereComponentsComeIntoReach) {
-  const TdfSettings s = settings(Kind::distance);
+  const TdfSettings s = union_settings(Kind::distance);
   const double g = 0.1, cut = -s.band - 10 / s.sharpness;
   const Vec2 node = kGrid.node_position(30, 15);
   const int at = kGrid.node(30, 15), height = 8;
@@ -212,7 +212,7 @@ double taylor_order(Kind kind, unsigned seed, double h0) {
   RandomComponents random(seed + 100);
   VectorXd direction(7 * static_cast<Eigen::Index>(design.size()));
   for (double& d : direction) d = random.uniform(-1, 1) * kGrid.dx();
-  UnionTdf tdf(kGrid, settings(kind));
+  UnionTdf tdf(kGrid, union_settings(kind));
   tdf.evaluate(moved(design, direction, 1e-3));
   VectorXd bend = tdf.density();
   tdf.evaluate(moved(design, direction, -1e-3));
@@ -252,7 +252,7 @@ TEST(UnionTdf, PullBackOfThePaperPassesTheTaylorTest) {
 }
 
 TEST_P(EveryUnion, ManyFunctionsAtOnceAreThoseOneByOne) {
-  TdfSettings s = settings(GetParam());
+  TdfSettings s = union_settings(GetParam());
   s.erosion = 0.3 * s.band;
   UnionTdf tdf(kGrid, s);
   tdf.evaluate(random_design(3));
@@ -272,7 +272,7 @@ TEST_P(EveryUnion, ManyFunctionsAtOnceAreThoseOneByOne) {
 }
 
 TEST(UnionTdf, InfluenceIsWhatTakingAComponentOutChanges) {
-  TdfSettings s = settings(Kind::distance);
+  TdfSettings s = union_settings(Kind::distance);
   s.erosion = 0.3 * s.band;
   std::vector<Component> design = random_design(4);
   design.push_back({.center = {50, 50}});  // far outside
@@ -303,7 +303,8 @@ TEST(UnionTdf, InfluenceIsWhatTakingAComponentOutChanges) {
 TEST(UnionTdf, RepeatsItselfBitForBit) {
   const std::vector<Component> design = random_design(1), other = random_design(2, 33);
   const VectorXd seed = VectorXd::LinSpaced(kGrid.n_nodes(), -1, 1);
-  UnionTdf fresh(kGrid, settings(Kind::distance)), used(kGrid, settings(Kind::distance));
+  UnionTdf fresh(kGrid, union_settings(Kind::distance)),
+      used(kGrid, union_settings(Kind::distance));
   VectorXd from_fresh, from_used;
   used.evaluate(other);
   used.pull_back(seed, from_used);
@@ -316,7 +317,7 @@ TEST(UnionTdf, RepeatsItselfBitForBit) {
 }
 
 TEST(UnionTdf, RefusesWhatIsNotANumber) {
-  UnionTdf tdf(kGrid, settings(Kind::distance));
+  UnionTdf tdf(kGrid, union_settings(Kind::distance));
   std::vector<Component> design = random_design(1);
   design[3].c2 = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(tdf.evaluate(design), Error);
@@ -328,7 +329,7 @@ TEST(UnionTdf, RefusesWhatIsNotANumber) {
   VectorXd gradient;
   const VectorXd bad = VectorXd::Constant(kGrid.n_nodes(), std::numeric_limits<double>::infinity());
   EXPECT_THROW(tdf.pull_back(bad, gradient), Error);
-  TdfSettings s = settings(Kind::distance);
+  TdfSettings s = union_settings(Kind::distance);
   s.band = 0;
   EXPECT_THROW(UnionTdf(kGrid, s), Error);
 }
@@ -337,7 +338,7 @@ TEST(UnionTdf, RefusesWhatIsNotANumber) {
 // central differences of its gradient. For h = 1e-6 the truncation is h² times fourth derivatives,
 // 1e-12 / band³.
 TEST(Curvature, MeetsDifferencesOfTheGradient) {
-  TdfSettings s = settings(Kind::distance);
+  TdfSettings s = union_settings(Kind::distance);
   s.erosion = 0.4 * kGrid.dx();
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const std::vector<Component> design = random_design(seed, 6);

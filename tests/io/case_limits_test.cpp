@@ -15,7 +15,7 @@ std::string repeated(const std::string& part, int n) {
   return out;
 }
 
-std::string complaint(const std::string& text) {
+std::string limit_refusal(const std::string& text) {
   try {
     parse_case(text, "a.toml");
   } catch (const Error& e) {
@@ -30,10 +30,10 @@ TEST(CaseLimits, OfKeysAndNesting) {
   const std::string fifth = "a.toml:5: ";
   for (const std::string& dotted :
        {repeated("a.", 20'000) + "a = 1", "[" + repeated("a.", 20'000) + "a]"})
-    EXPECT_TRUE(says(complaint(start + dotted), fifth, {"key", "100", "dots"}));
+    EXPECT_TRUE(says(limit_refusal(start + dotted), fifth, {"key", "100", "dots"}));
   for (const std::string& nested : {repeated("[", 20'000), repeated("{a = ", 20'000)})
-    EXPECT_TRUE(says(complaint(start + "x = " + nested), fifth, {"100", "nested"}));
-  EXPECT_TRUE(says(complaint(start + repeated("a", 5000) + " = 1"), fifth, {"key", "2000"}));
+    EXPECT_TRUE(says(limit_refusal(start + "x = " + nested), fifth, {"100", "nested"}));
+  EXPECT_TRUE(says(limit_refusal(start + repeated("a", 5000) + " = 1"), fifth, {"key", "2000"}));
 }
 
 TEST(CaseLimits, LeaveStringsAndCommentsAlone) {
@@ -43,7 +43,7 @@ TEST(CaseLimits, LeaveStringsAndCommentsAlone) {
            "a = \"\"\"\n" + dots + "\n\"\"\"", "a = '''\n" + dots + "\n'''",
            "a = \"\\\"" + dots + "\"", "a = [" + repeated("1.5, ", 1000) + "]",
            repeated("a.", 99) + "a = 1", "x = " + repeated("[", 100) + repeated("]", 100)})
-    EXPECT_EQ(complaint(text), "") << text.substr(0, 20);
+    EXPECT_EQ(limit_refusal(text), "") << text.substr(0, 20);
 }
 
 /// Returns the message of the check of the limits alone.

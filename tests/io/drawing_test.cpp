@@ -45,31 +45,39 @@ TEST_F(Drawings, PolylinesHaveArcs) {
                                                {10, 60}, {20, 0}, {42, bulge}, {10, 60}, {20, 50},
                                                {42, 0},  {10, 0}, {20, 50},    {42, 0}};
   };
-  const double half = 0.5 * kPi * 25e-3 * 25e-3, box = 60e-3 * 50e-3;
+  const double half = 0.5 * std::numbers::pi * 25e-3 * 25e-3, box = 60e-3 * 50e-3;
   const Region out = plate("part.dxf", dxf(entity("LWPOLYLINE", vertices(1))));
-  EXPECT_NEAR(area(out), box + half, kPi * 25e-3 * 85e-3 * kDrawingTolerance);
+  EXPECT_NEAR(area(out), box + half, std::numbers::pi * 25e-3 * 85e-3 * kDrawingTolerance);
   EXPECT_NEAR(bounds_of(out.outer).upper.x(), 85e-3, 1e-6);
   const Region in = plate("part.dxf", dxf(entity("LWPOLYLINE", vertices(-1))));
-  EXPECT_NEAR(area(in), box - half, kPi * 25e-3 * 85e-3 * kDrawingTolerance);
+  EXPECT_NEAR(area(in), box - half, std::numbers::pi * 25e-3 * 85e-3 * kDrawingTolerance);
   // A quarter circle by POLYLINE, and by a chain with an arc in reverse direction.
-  const double quarter = std::tan(kPi / 8);
+  const double quarter = std::tan(std::numbers::pi / 8);
   std::string old = entity("POLYLINE", {{66, 1}, {70, 1}});
   old += entity("VERTEX", {{10, 0}, {20, 0}}) +
          entity("VERTEX", {{10, 40}, {20, 0}, {42, quarter}}) +
          entity("VERTEX", {{10, 0}, {20, 40}});
   const Region fan = plate("part.dxf", dxf(old + entity("SEQEND", {})));
-  EXPECT_NEAR(area(fan), 0.25 * kPi * 16e-4, 0.5 * kPi * 40e-3 * 40e-3 * kDrawingTolerance);
+  EXPECT_NEAR(area(fan), 0.25 * std::numbers::pi * 16e-4,
+              0.5 * std::numbers::pi * 40e-3 * 40e-3 * kDrawingTolerance);
   const Region chain =
       plate("part.dxf", dxf(line(40, 0, 0, 0) + arc(0, 0, 40, 0, 90) + line(0, 0, 0, 40)));
-  EXPECT_NEAR(area(chain), 0.25 * kPi * 16e-4, 0.5 * kPi * 40e-3 * 40e-3 * kDrawingTolerance);
+  EXPECT_NEAR(area(chain), 0.25 * std::numbers::pi * 16e-4,
+              0.5 * std::numbers::pi * 40e-3 * 40e-3 * kDrawingTolerance);
 }
 
 TEST_F(Drawings, EllipsesHaveTheirArea) {
-  const std::string ellipse = entity(
-      "ELLIPSE",
-      {{10, 40}, {20, 25}, {30, 0}, {11, 6}, {21, 8}, {31, 0}, {40, 0.5}, {41, 0}, {42, 2 * kPi}});
+  const std::string ellipse = entity("ELLIPSE", {{10, 40},
+                                                 {20, 25},
+                                                 {30, 0},
+                                                 {11, 6},
+                                                 {21, 8},
+                                                 {31, 0},
+                                                 {40, 0.5},
+                                                 {41, 0},
+                                                 {42, 2 * std::numbers::pi}});
   const Region r = plate("part.dxf", dxf(kFrame + ellipse));
-  EXPECT_NEAR(area(r), 4e-3 - kPi * 50e-6, 60e-3 * 80e-3 * kDrawingTolerance);
+  EXPECT_NEAR(area(r), 4e-3 - std::numbers::pi * 50e-6, 60e-3 * 80e-3 * kDrawingTolerance);
 }
 
 // Four rational quadratic splines form a circle; here it is one SPLINE of nine points.
@@ -88,7 +96,8 @@ TEST_F(Drawings, SplinesOfACircleHaveItsArea) {
       read_drawing(scratch_.write("part.dxf", dxf(entity("SPLINE", codes))), {}).rings;
   ASSERT_EQ(rings.size(), 1u);
   for (const Vec2& p : rings[0]) EXPECT_NEAR((p - Vec2(0.04, 0.025)).norm(), 0.02, 1e-6 * 0.02);
-  EXPECT_NEAR(area(region_of(rings)), kPi * 4e-4, 2 * kPi * 20e-3 * 40e-3 * kDrawingTolerance);
+  EXPECT_NEAR(area(region_of(rings)), std::numbers::pi * 4e-4,
+              2 * std::numbers::pi * 20e-3 * 40e-3 * kDrawingTolerance);
   codes.erase(codes.begin() + 5);  // removes a knot
   EXPECT_TRUE(refused("part.dxf", dxf(entity("SPLINE", codes)), {"SPLINE", "knots"}));
 }

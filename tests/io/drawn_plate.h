@@ -12,8 +12,6 @@
 /// Drawings of a plate of 80 x 50 mm with two holes of 5 and 8 mm radius.
 namespace flexmorph::io {
 
-inline constexpr double kPi = std::numbers::pi;
-
 inline std::string pair(int code, const std::string& value) {
   return std::to_string(code) + "\n" + value + "\n";
 }
@@ -49,9 +47,9 @@ inline std::string arc(double x, double y, double r, double from, double to) {
 inline const std::string kFrame =
     line(0, 0, 80, 0) + line(80, 50, 80, 0) + line(0, 50, 0, 0) + line(0, 50, 80, 50);
 inline const std::string kHoles = circle(20, 25, 5) + circle(50, 25, 8);
-inline constexpr double kArea = 80e-3 * 50e-3 - kPi * (25e-6 + 64e-6);
+inline constexpr double kArea = 80e-3 * 50e-3 - std::numbers::pi * (25e-6 + 64e-6);
 /// Tolerance of the area: sides are within 1e-5 of 80 mm from the circles.
-inline constexpr double kOff = 2 * kPi * 13e-3 * 80e-3 * kDrawingTolerance;
+inline constexpr double kOff = 2 * std::numbers::pi * 13e-3 * 80e-3 * kDrawingTolerance;
 
 class Drawings : public ::testing::Test {
  protected:

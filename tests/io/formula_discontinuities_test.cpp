@@ -11,7 +11,7 @@
 namespace flexmorph::io {
 namespace {
 
-std::string complaint(const std::string& text) {
+std::string discontinuity(const std::string& text) {
   try {
     const Formula formula(text);
     formula.check(1);
@@ -91,7 +91,7 @@ TEST(Formula, ManyDiscontinuitiesAreFoundOrRefused) {
   EXPECT_EQ(Formula("abs(sin(pi*(500*t + 0.25)))").discontinuities(1).size(), 500u);
   std::string text = "0";
   for (int i = 0; i < 200; ++i) text += " + abs(sin(" + std::to_string(90000 + 7 * i) + "*t))";
-  EXPECT_TRUE(says(complaint(text), "formula '" + text + "': ", {"long", "discontinuities"}));
+  EXPECT_TRUE(says(discontinuity(text), "formula '" + text + "': ", {"long", "discontinuities"}));
 }
 
 TEST(Formula, FunctionsWithDiscontinuitiesAreReadOrRefused) {

@@ -15,8 +15,6 @@
 namespace flexmorph::io {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 using Constants = std::map<std::string, double>;
 
 std::string complaint(const std::string& text, const Constants& constants = {}) {
@@ -53,8 +51,10 @@ std::string bar_length(const std::string& x0, const std::string& x_c) {
 }
 
 double bar_length(double x0, double x_c, double t) {
-  const double theta = -2 * kPi * std::pow(t - 0.5, 3) + 1.5 * kPi * t - kPi / 4;
-  return std::hypot(0.5 * std::cos(kPi - theta) + x_c - x0, 0.5 * std::sin(kPi - theta) + 0.4) -
+  const double theta = -2 * std::numbers::pi * std::pow(t - 0.5, 3) + 1.5 * std::numbers::pi * t -
+                       std::numbers::pi / 4;
+  return std::hypot(0.5 * std::cos(std::numbers::pi - theta) + x_c - x0,
+                    0.5 * std::sin(std::numbers::pi - theta) + 0.4) -
          0.1;
 }
 
@@ -69,7 +69,7 @@ const std::vector<Sample>& samples() {
       {"-t^2", [](double t) { return -t * t; }},
       {"2 - 1 - t/4/2", [](double t) { return 1 - t / 8; }},
       {"0.5 + 0.1*sin(2*pi*t)^2",
-       [](double t) { return 0.5 + 0.1 * std::pow(sin(2 * kPi * t), 2); }},
+       [](double t) { return 0.5 + 0.1 * std::pow(sin(2 * std::numbers::pi * t), 2); }},
       {"1.5e-1*t^3 - .5*t + 2E+1", [](double t) { return 0.15 * t * t * t - 0.5 * t + 20; }},
       {"tan(t)*cos(3*t)", [](double t) { return std::tan(t) * std::cos(3 * t); }},
       {"asin(0.9*t) + acos(t/2)", [](double t) { return std::asin(0.9 * t) + std::acos(t / 2); }},
@@ -142,7 +142,7 @@ TEST(Formula, DerivativesOfThePlatformByHand) {
   const Jet start = y(0);
   EXPECT_NEAR(start.value, 0.4, 1e-15);
   EXPECT_NEAR(start.rate, 0, 1e-14);
-  EXPECT_NEAR(start.acceleration, 3 * kPi, 1e-13);
+  EXPECT_NEAR(start.acceleration, 3 * std::numbers::pi, 1e-13);
 }
 
 TEST(Formula, LongestBarOfThePlatform) {

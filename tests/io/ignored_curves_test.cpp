@@ -69,7 +69,7 @@ TEST_F(Drawings, IgnoreWhatIsDrawnTwiceOrHasNoLength) {
   one_note(entity("LWPOLYLINE", frame), {"1 curve ", "twice"});
   // Two different arcs with common ends are not one arc.
   EXPECT_NEAR(area(plate("part.dxf", dxf(arc(0, 0, 5, 0, 180) + arc(0, 0, 5, 180, 360)))),
-              25e-6 * kPi, 2 * kPi * 5e-3 * 10e-3 * kDrawingTolerance);
+              25e-6 * std::numbers::pi, 2 * std::numbers::pi * 5e-3 * 10e-3 * kDrawingTolerance);
   const std::string twice =
       "<svg width=\"1mm\" viewBox=\"0 0 1 1\"><rect width=\"1\" height=\"1\"/><circle cx=\".5\" "
       "cy=\".5\" r=\".2\"/><circle cx=\".5\" cy=\".5\" r=\".2\"/></svg>";

@@ -10,7 +10,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-Lines lines_of(const std::string& text) {
+Lines screen_lines(const std::string& text) {
   Lines out;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) out.push_back(line);
@@ -26,7 +26,7 @@ Lines pieces_in(const std::string& text) {
 
 size_t widest(const std::string& text) {
   size_t out = 0;
-  for (const std::string& line : lines_of(text)) out = std::max(out, columns_of(line));
+  for (const std::string& line : screen_lines(text)) out = std::max(out, columns_of(line));
   return out;
 }
 

@@ -9,8 +9,6 @@
 namespace flexmorph::io {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double si(double value, const std::string& unit) {
   const std::optional<Unit> found = read_unit(unit);
   EXPECT_TRUE(found) << unit;
@@ -38,12 +36,12 @@ TEST(Units, DecimalOnesAreExact) {
 }
 
 TEST(Units, OthersHaveTheirDefinedValues) {
-  EXPECT_DOUBLE_EQ(si(30, "deg"), kPi / 6);
-  EXPECT_DOUBLE_EQ(si(30, "\xc2\xb0"), kPi / 6);
-  EXPECT_DOUBLE_EQ(si(3, "rpm"), 0.1 * kPi);
-  EXPECT_DOUBLE_EQ(si(90, "deg/s"), 0.5 * kPi);
-  EXPECT_DOUBLE_EQ(si(2, "rev"), 4 * kPi);
-  EXPECT_DOUBLE_EQ(si(1, "N m/deg"), 180 / kPi);
+  EXPECT_DOUBLE_EQ(si(30, "deg"), std::numbers::pi / 6);
+  EXPECT_DOUBLE_EQ(si(30, "\xc2\xb0"), std::numbers::pi / 6);
+  EXPECT_DOUBLE_EQ(si(3, "rpm"), 0.1 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(si(90, "deg/s"), 0.5 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(si(2, "rev"), 4 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(si(1, "N m/deg"), 180 / std::numbers::pi);
   EXPECT_DOUBLE_EQ(si(36, "km/h"), 10);
   EXPECT_DOUBLE_EQ(si(2, "in"), 0.0508);
   EXPECT_DOUBLE_EQ(si(1, "yd"), 0.9144);

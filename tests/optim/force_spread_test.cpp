@@ -13,8 +13,6 @@
 namespace flexmorph::verification {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Points of a circle, counterclockwise and optionally unequally spaced, and the fraction of the
 /// rim that belongs to each.
 struct Rim {
@@ -22,11 +20,11 @@ struct Rim {
   std::vector<double> shares;
 
   Rim(const Vec2& center, double radius, int n, double uneven, double from = 0,
-      double to = 2 * kPi) {
+      double to = 2 * std::numbers::pi) {
     std::vector<double> angles;
     for (int k = 0; k <= n; ++k) {
       const double u = static_cast<double>(k) / n;
-      angles.push_back(from + (to - from) * (u + uneven * std::sin(2 * kPi * u)));
+      angles.push_back(from + (to - from) * (u + uneven * std::sin(2 * std::numbers::pi * u)));
     }
     for (size_t k = 0; k + 1 < angles.size(); ++k) {
       const double middle = 0.5 * (angles[k] + angles[k + 1]);
@@ -64,9 +62,9 @@ TEST(ForceSpread, OfAPinIsACosine) {
   for (size_t k = 0; k < found.size(); ++k) {
     const Vec2 normal = (rim.points[k] - center) / radius;
     const double cosine = normal.dot(force) / force.norm();
-    const double pressure =
-        cosine > 0 ? 2 * force.norm() / (kPi * radius) * cosine * (2 * kPi * radius) * rim.shares[k]
-                   : 0;
+    const double pressure = cosine > 0 ? 2 * force.norm() / (std::numbers::pi * radius) * cosine *
+                                             (2 * std::numbers::pi * radius) * rim.shares[k]
+                                       : 0;
     EXPECT_NEAR((found[k] - pressure * normal).norm(), 0, 1e-3 * force.norm() * rim.shares[k]);
   }
 }
@@ -74,12 +72,13 @@ TEST(ForceSpread, OfAPinIsACosine) {
 // The resultant is the force even if the bore has material on one side of the force only.
 TEST(ForceSpread, OfAPinHasTheForceAsItsResultant) {
   const Vec2 center(0, 0), force(0, -7);
-  const Rim quarter(center, 2, 31, 0.05, -0.5 * kPi, 0.1 * kPi);
+  const Rim quarter(center, 2, 31, 0.05, -0.5 * std::numbers::pi, 0.1 * std::numbers::pi);
   const std::vector<Vec2> found = spread({force, 0, true, center}, quarter.points, quarter.shares);
   EXPECT_NEAR((sum(found) - force).norm(), 0, 1e-12);
   // Material behind the pin cannot carry its force, and a single point can carry it in one
   // direction only; no distribution is returned.
-  const Rim behind(center, 2, 31, 0, 0.1 * kPi, 0.9 * kPi), point(center, 2, 1, 0, -1.7, -1.4);
+  const Rim behind(center, 2, 31, 0, 0.1 * std::numbers::pi, 0.9 * std::numbers::pi),
+      point(center, 2, 1, 0, -1.7, -1.4);
   EXPECT_TRUE(spread({force, 0, true, center}, behind.points, behind.shares).empty());
   EXPECT_TRUE(spread({force, 0, true, center}, point.points, point.shares).empty());
 }
@@ -100,7 +99,7 @@ TEST(ForceSpread, OfAMomentHasNoResultant) {
 std::vector<Vec2> circle(double radius, int sides, bool clockwise) {
   std::vector<Vec2> out;
   for (int k = 0; k < sides; ++k) {
-    const double angle = (clockwise ? -2 : 2) * kPi * k / sides;
+    const double angle = (clockwise ? -2 : 2) * std::numbers::pi * k / sides;
     out.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
   }
   return out;
@@ -120,7 +119,8 @@ TEST(ForceSpread, TorqueTurnsARingAsItsShearSays) {
   const std::vector<Region> ring = {{outer, {inner}}};
   const OutlineVerification found = verify_outline(ring, {thickness, young, nu, 0}, loads,
                                                    {.tolerance = 1e-3, .size = 0.3, .reach = 0.1});
-  const double turn = moment / (4 * kPi * shear_modulus * thickness) * (1 / (a * a) - 1 / (b * b));
+  const double turn =
+      moment / (4 * std::numbers::pi * shear_modulus * thickness) * (1 / (a * a) - 1 / (b * b));
   EXPECT_NEAR(found.compliance, moment * turn, 1e-3 * moment * turn);
 }
 

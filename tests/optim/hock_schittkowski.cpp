@@ -20,10 +20,6 @@ namespace {
 using Gradient = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
 using Ad = Eigen::AutoDiffScalar<Gradient>;
 
-VectorXd vec(std::initializer_list<double> values) {
-  return Eigen::Map<const VectorXd>(values.begin(), static_cast<Eigen::Index>(values.size()));
-}
-
 VectorXd all(int n, double value) { return VectorXd::Constant(n, value); }
 
 /// The variables x(1) to x(n) with the numbering of the book.

@@ -13,11 +13,10 @@
 #include <vector>
 
 #include "optim/mmc/loads/compliance_evaluator.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::mmc {
 namespace {
-
-const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 
 /// Scale factors that are smooth functions of one parameter s.
 struct SmoothDesign {
@@ -116,8 +115,8 @@ TEST_P(EveryLoadDefinition, TaylorRemainderIsOfSecondOrder) {
   for (bool compress : {false, true}) {
     for (unsigned seed : {1u, 2u, 3u}) {
       const SmoothDesign start(kGrid, seed + 10), design(kGrid, seed);
-      ComplianceEvaluator compliance(loads, kSection, settings(compress), start.stiffness(0),
-                                     start.mass(0));
+      ComplianceEvaluator compliance(loads, fem::kThinSection, settings(compress),
+                                     start.stiffness(0), start.mass(0));
       ComplianceEvaluator::Value at;
       compliance.evaluate(design.stiffness(0), design.mass(0), at);
       const double f = at.f;
@@ -168,9 +167,10 @@ TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
   for (double smallest : {1e-3, 1e-6}) {
     const VectorXd factor = random_factors(kGrid, smallest, 5);
     for (Support support : {Support::moving_root, Support::far_end}) {
-      ComplianceEvaluator compliance(
-          loads, kSection, {LoadDefinition::stiffness, support, true, 1e-10}, factor, factor);
-      const fem::StaticSolver solver(kGrid, kSection);
+      ComplianceEvaluator compliance(loads, fem::kThinSection,
+                                     {LoadDefinition::stiffness, support, true, 1e-10}, factor,
+                                     factor);
+      const fem::StaticSolver solver(kGrid, fem::kThinSection);
       for (int l = 0; l < 4; ++l) {
         const fem::EslSet& set = loads.sets[static_cast<std::size_t>(l)];
         const VectorXd u = compliance.displacement(factor, factor, l);
@@ -187,12 +187,13 @@ TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
 TEST(Recovery, FrozenLoadsAgreeBetweenSupports) {
   const fem::EslSets loads = growing_plate(kGrid, 4, 12, 2);
   const VectorXd stiffness = random_factors(kGrid, 1e-6, 6), mass = random_factors(kGrid, 1e-2, 7);
-  ComplianceEvaluator at_root(loads, kSection,
+  ComplianceEvaluator at_root(loads, fem::kThinSection,
                               {LoadDefinition::frozen, Support::moving_root, true, 1e-10},
                               stiffness, mass);
-  ComplianceEvaluator far_end(
-      loads, kSection, {LoadDefinition::frozen, Support::far_end, true, 1e-10}, stiffness, mass);
-  const fem::StaticSolver solver(kGrid, kSection);
+  ComplianceEvaluator far_end(loads, fem::kThinSection,
+                              {LoadDefinition::frozen, Support::far_end, true, 1e-10}, stiffness,
+                              mass);
+  const fem::StaticSolver solver(kGrid, fem::kThinSection);
   for (int l = 0; l < 4; ++l) {
     const VectorXd expected = at_root.displacement(stiffness, mass, l);
     const VectorXd u = far_end.displacement(stiffness, mass, l);
@@ -208,8 +209,8 @@ TEST(Compliance, FrozenEqualsInertiaAtTheStart) {
   const fem::EslSets loads = growing_plate(kGrid, 5, 12, 2);
   const SmoothDesign design(kGrid, 4);
   const VectorXd k = design.stiffness(0), m = design.mass(0);
-  ComplianceEvaluator inertia(loads, kSection, {}, k, m);
-  ComplianceEvaluator frozen(loads, kSection,
+  ComplianceEvaluator inertia(loads, fem::kThinSection, {}, k, m);
+  ComplianceEvaluator frozen(loads, fem::kThinSection,
                              {LoadDefinition::frozen, Support::moving_root, true, 1e-10}, k, m);
   ComplianceEvaluator::Value a, b;
   inertia.evaluate(k, m, a);
@@ -222,7 +223,7 @@ TEST(Compliance, FrozenEqualsInertiaAtTheStart) {
 // One column of cells under a uniform acceleration along x. Reference: a rod under its own weight.
 TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
   const Grid g{0, 0, 1.0, 0.01, 200, 1};
-  fem::PlaneSection section = kSection;
+  fem::PlaneSection section = fem::kThinSection;
   section.poisson_ratio = 0;
   fem::EslSets loads{g, {{}}};
   loads.sets[0].acceleration = VectorXd::Zero(2 * g.n_nodes());
@@ -245,8 +246,10 @@ TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
 TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 1);
   const SmoothDesign start(kGrid, 20);
-  ComplianceEvaluator all(loads, kSection, settings(false), start.stiffness(0), start.mass(0));
-  ComplianceEvaluator few(loads, kSection, settings(true), start.stiffness(0), start.mass(0));
+  ComplianceEvaluator all(loads, fem::kThinSection, settings(false), start.stiffness(0),
+                          start.mass(0));
+  ComplianceEvaluator few(loads, fem::kThinSection, settings(true), start.stiffness(0),
+                          start.mass(0));
   EXPECT_EQ(all.n_right_hand_sides(), 40);
   if (GetParam().loads == LoadDefinition::inertia) {
     // x, y of the rotation, Coriolis and root speed, three modes, components of the tip force
@@ -286,9 +289,9 @@ TEST(Compression, FarEndWithFewRootColumns) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 0, 10);
   const SmoothDesign start(kGrid, 20), design(kGrid, 1);
   for (LoadDefinition definition : {LoadDefinition::frozen, LoadDefinition::stiffness}) {
-    ComplianceEvaluator all(loads, kSection, {definition, Support::far_end, false, 0},
+    ComplianceEvaluator all(loads, fem::kThinSection, {definition, Support::far_end, false, 0},
                             start.stiffness(0), start.mass(0));
-    ComplianceEvaluator few(loads, kSection, {definition, Support::far_end, true, 1e-10},
+    ComplianceEvaluator few(loads, fem::kThinSection, {definition, Support::far_end, true, 1e-10},
                             start.stiffness(0), start.mass(0));
     EXPECT_LT(few.n_right_hand_sides(), 25);
     ComplianceEvaluator::Value a, b;
@@ -304,9 +307,9 @@ TEST(Compression, OneRootColumnNeedsFewSolves) {
   fem::EslSets loads = growing_plate(kGrid, 30, 4, 4);
   loads.sets[7].weight = 0;
   const SmoothDesign design(kGrid, 1);
-  ComplianceEvaluator all(loads, kSection,
+  ComplianceEvaluator all(loads, fem::kThinSection,
                           {LoadDefinition::inertia, Support::moving_root, false, 0}, {}, {});
-  ComplianceEvaluator few(loads, kSection, {}, {}, {});
+  ComplianceEvaluator few(loads, fem::kThinSection, {}, {}, {});
   EXPECT_LE(few.n_right_hand_sides(), 8);
   ComplianceEvaluator::Value a, b;
   all.evaluate(design.stiffness(0), design.mass(0), a);
@@ -323,10 +326,11 @@ TEST(Compression, ATinyPlate) {
   const VectorXd ones = VectorXd::Ones(2);
   for (Support support : {Support::moving_root, Support::far_end}) {
     ComplianceEvaluator::Value a, b;
-    ComplianceEvaluator(loads, kSection, {LoadDefinition::frozen, support, false, 0}, ones, ones)
+    ComplianceEvaluator(loads, fem::kThinSection, {LoadDefinition::frozen, support, false, 0}, ones,
+                        ones)
         .evaluate(ones, ones, a);
-    ComplianceEvaluator few(loads, kSection, {LoadDefinition::frozen, support, true, 1e-10}, ones,
-                            ones);
+    ComplianceEvaluator few(loads, fem::kThinSection,
+                            {LoadDefinition::frozen, support, true, 1e-10}, ones, ones);
     few.evaluate(ones, ones, b);
     EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
     if (support == Support::far_end) {
@@ -340,10 +344,10 @@ TEST(Compression, OrderAndZeroWeightsDoNotMatter) {
   loads.sets[7].weight = 0;
   const SmoothDesign design(kGrid, 1);
   ComplianceEvaluator::Value sorted, shuffled;
-  ComplianceEvaluator(loads, kSection, {}, {}, {})
+  ComplianceEvaluator(loads, fem::kThinSection, {}, {}, {})
       .evaluate(design.stiffness(0), design.mass(0), sorted);
   std::shuffle(loads.sets.begin(), loads.sets.end(), std::mt19937(3));
-  ComplianceEvaluator few(loads, kSection, {}, {}, {});
+  ComplianceEvaluator few(loads, fem::kThinSection, {}, {}, {});
   few.evaluate(design.stiffness(0), design.mass(0), shuffled);
   EXPECT_LT(few.n_right_hand_sides(), 10);
   EXPECT_NEAR(sorted.f, shuffled.f, 1e-9 * sorted.f);
@@ -358,7 +362,7 @@ TEST(Compliance, RefusesWithTheReason) {
   const auto message = [&](const fem::EslSets& loads, const ComplianceSettings& settings,
                            const VectorXd& k0) {
     try {
-      ComplianceEvaluator(loads, kSection, settings, k0, ones);
+      ComplianceEvaluator(loads, fem::kThinSection, settings, k0, ones);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), Error::Kind::input);
       return std::string(error.what());
@@ -384,7 +388,7 @@ TEST(Compliance, RefusesWithTheReason) {
   const ComplianceSettings frozen{LoadDefinition::frozen, Support::far_end, true, 1e-10};
   EXPECT_NE(message(good, frozen, VectorXd::Ones(3)).find("factors"), std::string::npos);
 
-  ComplianceEvaluator compliance(good, kSection, {}, ones, ones);
+  ComplianceEvaluator compliance(good, fem::kThinSection, {}, ones, ones);
   ComplianceEvaluator::Value value;
   EXPECT_THROW(compliance.evaluate(-ones, ones, value), Error);
   VectorXd nan = ones;

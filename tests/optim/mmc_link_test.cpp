@@ -10,24 +10,24 @@
 #include <string>
 
 #include "optim/mmc/loads/compliance_evaluator.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::mmc {
 namespace {
 
-const fem::PlaneSection kSection{0.01, 1e8, 0.3, 2700};
-const Grid kGrid{0, -0.05, 0.6, 0.1, 36, 6};
+const Grid kLinkGrid{0, -0.05, 0.6, 0.1, 36, 6};
 /// The line of the pins is oblique to the grid.
-const std::array<int, 2> kPins = {kGrid.node(2, 1), kGrid.node(33, 5)};
+const std::array<int, 2> kPins = {kLinkGrid.node(2, 1), kLinkGrid.node(33, 5)};
 
 /// Scale factors as smooth functions of one parameter s: stiffness from 1e-3 to 1, mass from 0.02
 /// to 1.
-struct SmoothDesign {
+struct SmoothLink {
   VectorXd phase, speed;
 
-  explicit SmoothDesign(unsigned seed) : phase(kGrid.n_cells()), speed(kGrid.n_cells()) {
+  explicit SmoothLink(unsigned seed) : phase(kLinkGrid.n_cells()), speed(kLinkGrid.n_cells()) {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<double> uniform(0, 1);
-    for (int c = 0; c < kGrid.n_cells(); ++c) {
+    for (int c = 0; c < kLinkGrid.n_cells(); ++c) {
       phase(c) = 2 * std::numbers::pi * uniform(engine);
       speed(c) = 0.5 + uniform(engine);
     }
@@ -48,21 +48,21 @@ struct SmoothDesign {
 /// Returns n loads of a link that rotates and swings, with forces at its pins and a mass between
 /// them. These loads are not balanced.
 fem::EslSets swinging_link(int n) {
-  fem::EslSets loads{kGrid, {}, kPins};
+  fem::EslSets loads{kLinkGrid, {}, kPins};
   for (int k = 0; k < n; ++k) {
     const double t = 0.37 * k, spin = 9 * std::sin(2 * t), turn = 40 * std::cos(2 * t);
     fem::EslSet set;
     set.time = t;
     set.weight = (1 + 0.3 * std::sin(5 * t)) / n;
-    set.acceleration.resize(2 * kGrid.n_nodes());
-    for (int i = 0; i <= kGrid.nx; ++i)
-      for (int j = 0; j <= kGrid.ny; ++j) {
-        const Vec2 at = kGrid.node_position(i, j);
-        set.acceleration.segment<2>(2 * kGrid.node(i, j)) =
+    set.acceleration.resize(2 * kLinkGrid.n_nodes());
+    for (int i = 0; i <= kLinkGrid.nx; ++i)
+      for (int j = 0; j <= kLinkGrid.ny; ++j) {
+        const Vec2 at = kLinkGrid.node_position(i, j);
+        set.acceleration.segment<2>(2 * kLinkGrid.node(i, j)) =
             Vec2(20 * std::cos(t), 20 * std::sin(t)) - spin * spin * at +
             turn * Vec2(-at.y(), at.x()) + Vec2(0, 30 * std::cos(3 * t) * std::sin(5 * at.x()));
       }
-    const int middle = kGrid.node(20, 3);
+    const int middle = kLinkGrid.node(20, 3);
     set.forces = {{kPins[0], {10 * std::cos(t), 5}},
                   {kPins[1], {7, 20 * std::sin(t)}},
                   {middle, -0.2 * set.acceleration.segment<2>(2 * middle)}};
@@ -71,13 +71,13 @@ fem::EslSets swinging_link(int n) {
   return loads;
 }
 
-struct Choice {
+struct LinkLoads {
   LoadDefinition loads;
   Support support;
   std::string name;
 };
 
-class EveryLink : public ::testing::TestWithParam<Choice> {
+class EveryLink : public ::testing::TestWithParam<LinkLoads> {
  protected:
   ComplianceSettings settings(bool compress) const {
     return {GetParam().loads, GetParam().support, compress, 1e-10};
@@ -86,19 +86,19 @@ class EveryLink : public ::testing::TestWithParam<Choice> {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, EveryLink,
-    ::testing::Values(Choice{LoadDefinition::inertia, Support::pins, "inertia_pins"},
-                      Choice{LoadDefinition::inertia, Support::floating, "inertia_floating"},
-                      Choice{LoadDefinition::frozen, Support::pins, "frozen_pins"},
-                      Choice{LoadDefinition::frozen, Support::floating, "frozen_floating"}),
+    ::testing::Values(LinkLoads{LoadDefinition::inertia, Support::pins, "inertia_pins"},
+                      LinkLoads{LoadDefinition::inertia, Support::floating, "inertia_floating"},
+                      LinkLoads{LoadDefinition::frozen, Support::pins, "frozen_pins"},
+                      LinkLoads{LoadDefinition::frozen, Support::floating, "frozen_floating"}),
     [](const auto& choice) { return choice.param.name; });
 
 TEST_P(EveryLink, TaylorRemainderIsOfSecondOrder) {
   const fem::EslSets loads = swinging_link(12);
   for (const bool compress : {false, true})
     for (const unsigned seed : {1u, 2u, 3u}) {
-      const SmoothDesign start(seed + 10), design(seed);
-      ComplianceEvaluator compliance(loads, kSection, settings(compress), start.stiffness(0),
-                                     start.mass(0));
+      const SmoothLink start(seed + 10), design(seed);
+      ComplianceEvaluator compliance(loads, fem::kThinSection, settings(compress),
+                                     start.stiffness(0), start.mass(0));
       ComplianceEvaluator::Value at;
       compliance.evaluate(design.stiffness(0), design.mass(0), at);
       const double f = at.f;
@@ -119,8 +119,8 @@ TEST_P(EveryLink, TaylorRemainderIsOfSecondOrder) {
 // total.
 TEST_P(EveryLink, GradientsAgreeWithDifferences) {
   const fem::EslSets loads = swinging_link(3);
-  const SmoothDesign start(5), design(6);
-  ComplianceEvaluator compliance(loads, kSection, settings(false), start.stiffness(0),
+  const SmoothLink start(5), design(6);
+  ComplianceEvaluator compliance(loads, fem::kThinSection, settings(false), start.stiffness(0),
                                  start.mass(0));
   const VectorXd k = design.stiffness(0), m = design.mass(0);
   ComplianceEvaluator::Value value;
@@ -161,9 +161,11 @@ TEST_P(EveryLink, GradientsAgreeWithDifferences) {
 
 TEST_P(EveryLink, CompressionChangesNothing) {
   const fem::EslSets loads = swinging_link(40);
-  const SmoothDesign start(20), design(1);
-  ComplianceEvaluator all(loads, kSection, settings(false), start.stiffness(0), start.mass(0));
-  ComplianceEvaluator few(loads, kSection, settings(true), start.stiffness(0), start.mass(0));
+  const SmoothLink start(20), design(1);
+  ComplianceEvaluator all(loads, fem::kThinSection, settings(false), start.stiffness(0),
+                          start.mass(0));
+  ComplianceEvaluator few(loads, fem::kThinSection, settings(true), start.stiffness(0),
+                          start.mass(0));
   EXPECT_EQ(all.n_right_hand_sides(), 40);
   // shifts, rotation, centrifugal and swing terms, three forces of two components; some coincide
   EXPECT_LE(few.n_right_hand_sides(), 11);
@@ -178,13 +180,13 @@ TEST_P(EveryLink, CompressionChangesNothing) {
 // Hᵀ u = 0: with `pins` the line of the pins does not move across itself; with `floating` the mean
 // translation and rotation, weighted by mass, vanish.
 TEST_P(EveryLink, DisplacementsAreThoseOfTheSupport) {
-  const SmoothDesign design(3);
+  const SmoothLink design(3);
   const VectorXd k = design.stiffness(0), m = design.mass(0);
-  ComplianceEvaluator compliance(swinging_link(2), kSection, settings(true), k, m);
+  ComplianceEvaluator compliance(swinging_link(2), fem::kThinSection, settings(true), k, m);
   const VectorXd u = compliance.displacement(k, m, 1);
   const double small = 1e-10 * u.lpNorm<Eigen::Infinity>();
   const auto position = [](int node) {
-    return kGrid.node_position(node / (kGrid.ny + 1), node % (kGrid.ny + 1));
+    return kLinkGrid.node_position(node / (kLinkGrid.ny + 1), node % (kLinkGrid.ny + 1));
   };
   if (GetParam().support == Support::pins) {
     const Vec2 line = (position(kPins[1]) - position(kPins[0])).normalized();
@@ -197,23 +199,24 @@ TEST_P(EveryLink, DisplacementsAreThoseOfTheSupport) {
   Vec2 linear(0, 0);
   double angular = 0;
   constexpr double kWeights[] = {1, 4, 1};
-  for (int i = 0; i < kGrid.nx; ++i)
-    for (int j = 0; j < kGrid.ny; ++j)
+  for (int i = 0; i < kLinkGrid.nx; ++i)
+    for (int j = 0; j < kLinkGrid.ny; ++j)
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) {
           const double s = 0.5 * a, t = 0.5 * b;
           const auto corner = [&](int p, int q) {
-            return Vec2(u.segment<2>(2 * kGrid.node(i + p, j + q)));
+            return Vec2(u.segment<2>(2 * kLinkGrid.node(i + p, j + q)));
           };
           const Vec2 here = (1 - s) * ((1 - t) * corner(0, 0) + t * corner(0, 1)) +
                             s * ((1 - t) * corner(1, 0) + t * corner(1, 1));
-          const Vec2 at = kGrid.node_position(i, j) + Vec2(s * kGrid.dx(), t * kGrid.dy());
-          const double w = kWeights[a] * kWeights[b] / 36 * m[kGrid.cell(i, j)];
+          const Vec2 at =
+              kLinkGrid.node_position(i, j) + Vec2(s * kLinkGrid.dx(), t * kLinkGrid.dy());
+          const double w = kWeights[a] * kWeights[b] / 36 * m[kLinkGrid.cell(i, j)];
           linear += w * here;
           angular += w * (at.x() * here.y() - at.y() * here.x());
         }
-  EXPECT_LT(linear.norm(), kGrid.n_cells() * small);
-  EXPECT_LT(std::abs(angular), kGrid.n_cells() * small);
+  EXPECT_LT(linear.norm(), kLinkGrid.n_cells() * small);
+  EXPECT_LT(std::abs(angular), kLinkGrid.n_cells() * small);
 }
 
 /// A slender link with pins in the middle of its ends.
@@ -257,21 +260,22 @@ TEST(Link, BendsLikeABeamOnTwoSupports) {
 }
 
 TEST(Link, BadInputIsRefused) {
-  const VectorXd ones = VectorXd::Ones(kGrid.n_cells());
+  const VectorXd ones = VectorXd::Ones(kLinkGrid.n_cells());
   const auto make = [&](const fem::EslSets& loads, LoadDefinition definition, Support support) {
-    return ComplianceEvaluator(loads, kSection, {definition, support, true, 1e-10}, ones, ones);
+    return ComplianceEvaluator(loads, fem::kThinSection, {definition, support, true, 1e-10}, ones,
+                               ones);
   };
   const fem::EslSets good = swinging_link(2);
   EXPECT_NO_THROW(make(good, LoadDefinition::inertia, Support::pins));
   EXPECT_THROW(make(good, LoadDefinition::stiffness, Support::pins), Error);
-  EXPECT_THROW(ComplianceEvaluator(good, kSection, {}, ones, ones), Error);
+  EXPECT_THROW(ComplianceEvaluator(good, fem::kThinSection, {}, ones, ones), Error);
   EXPECT_THROW(make(good, LoadDefinition::inertia, Support::moving_root), Error);
   fem::EslSets bad = good;
   bad.pins.reset();
   EXPECT_THROW(make(bad, LoadDefinition::inertia, Support::floating), Error);
   bad.pins = {kPins[0], kPins[0]};
   EXPECT_THROW(make(bad, LoadDefinition::inertia, Support::floating), Error);
-  bad.pins = {kPins[0], kGrid.n_nodes()};
+  bad.pins = {kPins[0], kLinkGrid.n_nodes()};
   EXPECT_THROW(make(bad, LoadDefinition::inertia, Support::pins), Error);
   bad = good;
   bad.sets[1].root_column = 3;

@@ -16,7 +16,7 @@ namespace {
 
 enum Parameter { X0, Y0, L, angle, c1, c2, c3 };
 
-Component bar(const Vec2& center, double half_length, double turn, double half) {
+Component turned_bar(const Vec2& center, double half_length, double turn, double half) {
   return {center, half_length, turn, half, half, half};
 }
 
@@ -41,8 +41,8 @@ double slope(const WidthGradient& w, int component, Parameter p) {
 
 /// The sides of bars are straight in their middle, where (x/L)^6 is below 1e-3.
 TEST(WidthGradient, OfASlitIsThatOfTwoFlanks) {
-  const std::vector<Component> bars = {bar({0.3, 0.02}, 0.2, 0, 0.012),
-                                       bar({0.3, -0.015}, 0.2, 0, 0.015)};
+  const std::vector<Component> bars = {turned_bar({0.3, 0.02}, 0.2, 0, 0.012),
+                                       turned_bar({0.3, -0.015}, 0.2, 0, 0.015)};
   const BodyProblem p = problem_of(bars);
   const LengthScaleViolation slit = narrowest(p, bars, false, 0.02);
   const WidthGradient w = width_gradient(p, bars, slit);
@@ -61,7 +61,8 @@ TEST(WidthGradient, OfASlitIsThatOfTwoFlanks) {
 /// is 2 g / cos β.
 TEST(WidthGradient, OfACrossingIsThatOfItsCorners) {
   const double g = 0.01, beta = 25 * std::numbers::pi / 180;
-  const std::vector<Component> bars = {bar({0.3, 0}, 0.12, beta, g), bar({0.3, 0}, 0.12, -beta, g)};
+  const std::vector<Component> bars = {turned_bar({0.3, 0}, 0.12, beta, g),
+                                       turned_bar({0.3, 0}, 0.12, -beta, g)};
   const BodyProblem p = problem_of(bars);
   // The corners next to the acute angle, above and below the centre.
   const double width = 2 * g / std::cos(beta);
@@ -88,7 +89,7 @@ TEST(WidthGradient, OfACrossingIsThatOfItsCorners) {
 
 /// A bar along the border, half of it outside: only its inner flank moves.
 TEST(WidthGradient, CountsNoBorder) {
-  const std::vector<Component> bars = {bar({0.3, -0.05}, 0.2, 0, 0.012)};
+  const std::vector<Component> bars = {turned_bar({0.3, -0.05}, 0.2, 0, 0.012)};
   const BodyProblem p = problem_of(bars);
   const LengthScaleViolation strip{
       LengthScaleViolation::Kind::bar, true, 0.012, {0.3, -0.044}, {0.3, -0.038}, {0.3, -0.05}};
@@ -170,7 +171,7 @@ TEST(OutlineLimits, FollowTheWidthsOfMovedComponents) {
 }
 
 TEST(OutlineLimits, AreNoLimitsWhereAllIsWide) {
-  const std::vector<Component> one = {bar({0.3, 0}, 0.35, 0, 0.03)};
+  const std::vector<Component> one = {turned_bar({0.3, 0}, 0.35, 0, 0.03)};
   const BodyProblem p = problem_of(one);
   OutlineLimits limits(p, {0.02, 0.01});
   ShapeLimits::Values found;

@@ -4,13 +4,9 @@
 #include <cmath>
 
 namespace flexmorph::optim::test {
-namespace {
-
 VectorXd vec(std::initializer_list<double> values) {
   return Eigen::Map<const VectorXd>(values.begin(), static_cast<Eigen::Index>(values.size()));
 }
-
-}  // namespace
 
 // Weight of a cantilever of five hollow boxes with a displacement limit at its tip: min 0.0624 Σ x,
 // 61/x₁³ + 37/x₂³ + 19/x₃³ + 7/x₄³ + 1/x₅³ <= 1. Printed optimum: 1.340. In closed form: x_j = (3

@@ -13,6 +13,9 @@
 
 namespace flexmorph::optim::test {
 
+/// Returns a vector of these values.
+VectorXd vec(std::initializer_list<double> values);
+
 /// A problem defined by one function, which counts its evaluations.
 class Analytic : public Problem {
  public:

@@ -8,6 +8,7 @@
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"
+#include "tests/support/sections.h"
 #include "tests/thermal/hot_models.h"
 
 namespace flexmorph::fem {
@@ -17,15 +18,6 @@ using testing::error_of;
 using testing::first_difference;
 using testing::mentions;
 using testing::ShapeSet;
-
-const PlaneSection kSection{0.03, 1e8, 0.3, 2700};
-
-/// Returns heat whose stretch s rises and falls with a rate.
-Heat warm() {
-  return testing::heat_of([](double t) {
-    return Motion{0.05 * std::sin(3 * t), 0.15 * std::cos(3 * t), -0.45 * std::sin(3 * t)};
-  });
-}
 
 // All lines of the element are free. Force and tangent must be derivatives of the energy by
 // unknowns and by lines, and the power of heat must be the rate at fixed unknowns.
@@ -37,7 +29,7 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
     return std::vector<MaterialLine>{{from, {}, true}, {to, {}, true}};
   };
   AncfPlate plate(3, ShapeSet::h16, lines(0.1, 0.18), lines(-0.02, 0.05));
-  const BodyTerm term(make_heated(make_term(GetParam(), kSection), warm()));
+  const BodyTerm term(make_heated(make_term(GetParam(), kThickSection), testing::moving_heat()));
   const VectorRows rest = testing::random_shape(plate, 0.2, 5);
   const Eigen::Index n = rest.size() + 4;
   VectorXd all(n);
@@ -118,7 +110,7 @@ TEST_P(HeatedLines, ForcesAreTheGradientOfTheHotEnergy) {
 TEST(Heated, ScalesItsTemperature) {
   AncfBeam beam(1, 0.1, 1);
   const auto hot = [&](double a) {
-    BodyTerm term(make_heated(make_beam_gcm(kSection), testing::constant_heat(a)));
+    BodyTerm term(make_heated(make_beam_gcm(kThickSection), testing::constant_heat(a)));
     term->prepare(beam, {}, true);
     term.heated->heat_to(0);
     return term;
@@ -136,19 +128,20 @@ TEST(Heated, ScalesItsTemperature) {
 TEST(Heated, RefusesWhatItCannotHeat) {
   using Kind = Error::Kind;
   const Heat good = testing::constant_heat(0.01);
-  EXPECT_TRUE(mentions(error_of(Kind::input, [&] { make_heated(make_inertia(kSection), good); }),
-                       "'inertia'"));
+  EXPECT_TRUE(mentions(
+      error_of(Kind::input, [&] { make_heated(make_inertia(kThickSection), good); }), "'inertia'"));
   EXPECT_TRUE(mentions(error_of(Kind::input,
                                 [&] {
-                                  make_heated(make_beam_gcm(kSection), Heat{1, {}});
+                                  make_heated(make_beam_gcm(kThickSection), Heat{1, {}});
                                 }),
                        "temperature"));
   Heat endless = good;
   endless.expansion = std::nan("");
-  EXPECT_TRUE(mentions(
-      error_of(Kind::input, [&] { make_heated(make_beam_gcm(kSection), endless); }), "finite"));
+  EXPECT_TRUE(
+      mentions(error_of(Kind::input, [&] { make_heated(make_beam_gcm(kThickSection), endless); }),
+               "finite"));
   for (const double a : {-1.0, -2.0, std::nan("")}) {
-    const BodyTerm term(make_heated(make_beam_gcm(kSection), testing::constant_heat(a)));
+    const BodyTerm term(make_heated(make_beam_gcm(kThickSection), testing::constant_heat(a)));
     EXPECT_TRUE(
         mentions(error_of(Kind::numerical, [&] { term.heated->heat_to(0.25); }), "t = 0.25"));
   }
@@ -159,10 +152,10 @@ TEST(Heated, RefusesWhatItCannotHeat) {
     body.terms.push_back(std::move(term));
     return body;
   };
-  Body no_strain = body_of(std::make_unique<AncfBeam>(1, 0.1, 1), make_inertia(kSection));
+  Body no_strain = body_of(std::make_unique<AncfBeam>(1, 0.1, 1), make_inertia(kThickSection));
   const std::string unstrained = error_of(Kind::input, [&] { heat(no_strain, good); });
   EXPECT_TRUE(mentions(unstrained, "'arm'") && mentions(unstrained, "elastic")) << unstrained;
-  Body body = body_of(std::make_unique<AncfBeam>(1, 0.1, 1), make_beam_ecm(kSection));
+  Body body = body_of(std::make_unique<AncfBeam>(1, 0.1, 1), make_beam_ecm(kThickSection));
   heat(body, good);
   EXPECT_TRUE(body.heat.has_value());
   EXPECT_EQ(body.terms[0]->name(), "ecm");

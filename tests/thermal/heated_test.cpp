@@ -11,6 +11,7 @@
 #include "fem/model/body_term.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"
+#include "tests/support/sections.h"
 #include "tests/thermal/hot_models.h"
 
 namespace flexmorph::fem {
@@ -19,7 +20,6 @@ namespace {
 using testing::first_difference;
 using testing::ShapeSet;
 
-const PlaneSection kSection{0.03, 1e8, 0.3, 2700};
 constexpr int kElements = 11;  // one full batch and one that is not
 
 struct Case {
@@ -63,11 +63,12 @@ double of_points(const Element& element, int e, const LocalRows& q, double s, in
   double out = 0;
   for (Eigen::Index p = 0; p < t.weight.size(); ++p)
     out += t.weight[p] * density(D, t.N_m.row(p) * q / s, t.N_n.row(p) * q / s);
-  return kSection.thickness * out;
+  return kThickSection.thickness * out;
 }
 
 double of_axis(const Element& element, int e, const LocalRows& q, double s) {
-  const double E = kSection.youngs_modulus, nu = kSection.poisson_ratio, l = 0.1, h = 0.06;
+  const double E = kThickSection.youngs_modulus, nu = kThickSection.poisson_ratio, l = 0.1,
+               h = 0.06;
   Eigen::Matrix3d D = Eigen::Matrix3d::Zero();
   D.topLeftCorner<2, 2>() << nu * nu, nu, nu, nu * nu;
   D *= E / (1 - nu * nu);
@@ -77,7 +78,7 @@ double of_axis(const Element& element, int e, const LocalRows& q, double s) {
     element.locate({l * (e + gauss(9).points[g]), 0}, Tabulate::gradient, t);
     out += l * h * gauss(9).weights[g] * density(D, t.N_m.row(0) * q / s, t.N_n.row(0) * q / s);
   }
-  return kSection.thickness * out;
+  return kThickSection.thickness * out;
 }
 
 /// Returns the energy of a straight beam with assumed strains of its axis; at the ends of the
@@ -107,7 +108,7 @@ double of_assumed(const Element& element, int e, const LocalRows& q, double s,
       out += 0.5 * l * h * gauss(9).weights[g] * gauss(9).weights[k] * all.dot(D * all);
     }
   }
-  return kSection.thickness * out;
+  return kThickSection.thickness * out;
 }
 
 double of_samples(const AncfPlate& plate, int e, const LocalRows& q, double s) {
@@ -132,9 +133,9 @@ double of_samples(const AncfPlate& plate, int e, const LocalRows& q, double s) {
           z[2] += parabola(i, x) * parabola(j, y) * strain(0.5 * i, 0.5 * j)[2];
       }
       out += 0.1 * 0.07 * gauss(8).weights[g] * gauss(8).weights[h] * 0.5 *
-             z.dot(kSection.elasticity() * z);
+             z.dot(kThickSection.elasticity() * z);
     }
-  return kSection.thickness * out;
+  return kThickSection.thickness * out;
 }
 
 /// Returns the energy of P (7), at the 9 x 9 points of the term.
@@ -147,16 +148,16 @@ double of_curvature(const Element& element, int e, const LocalRows& q, double s)
     const Vec3 n = at(t.N_m).cross(at(t.N_n));
     const Vec3 k =
         Vec3(at(t.N_mm).dot(n), at(t.N_nn).dot(n), 2 * at(t.N_mn).dot(n)) / std::pow(n.norm(), 3);
-    out += 0.5 * t.weight[p] * k.dot(kSection.elasticity() * k);
+    out += 0.5 * t.weight[p] * k.dot(kThickSection.elasticity() * k);
   }
-  return std::pow(kSection.thickness, 3) / 12 * out;
+  return std::pow(kThickSection.thickness, 3) / 12 * out;
 }
 
 double hot_energy(const Case& c, const Element& element, int e, const LocalRows& q, double s) {
-  const double E = kSection.youngs_modulus;
+  const double E = kThickSection.youngs_modulus;
   double cold = 0;
-  if (c.term == "membrane") cold = of_points(element, e, q, s, 14, kSection.elasticity());
-  const Eigen::Matrix3d D = kSection.elasticity(), D0 = Vec3(E, E, E / 2.6).asDiagonal();
+  if (c.term == "membrane") cold = of_points(element, e, q, s, 14, kThickSection.elasticity());
+  const Eigen::Matrix3d D = kThickSection.elasticity(), D0 = Vec3(E, E, E / 2.6).asDiagonal();
   if (c.term == "gcm") cold = of_assumed(element, e, q, s, D, Eigen::Matrix3d::Zero());
   if (c.term == "ecm") cold = of_assumed(element, e, q, s, D0, D - D0);
   if (c.term == "gcm_full") cold = of_points(element, e, q, s, 8, D);
@@ -170,7 +171,8 @@ double hot_energy(const Case& c, const Element& element, int e, const LocalRows&
 class HeatedTerm : public ::testing::TestWithParam<Case> {
  protected:
   std::unique_ptr<Element> element = element_of(GetParam());
-  BodyTerm term = make_heated(make_term(GetParam().term, kSection), heat_for(GetParam().volume));
+  BodyTerm term =
+      make_heated(make_term(GetParam().term, kThickSection), heat_for(GetParam().volume));
 
   void SetUp() override { term->prepare(*element, {}, true); }
   double stretch(double t) const { return heat_for(GetParam().volume).stretch(t).value; }

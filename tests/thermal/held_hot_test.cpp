@@ -17,7 +17,7 @@ namespace {
 using testing::rows_of_body;
 using testing::ShapeSet;
 
-const PlaneSection kSection{0.1, 7e8, 0.3, 7200};
+const PlaneSection kStrongSection{0.1, 7e8, 0.3, 7200};
 
 struct Equilibrium {
   Workspace model;
@@ -60,8 +60,8 @@ TEST(ClampedBeam, PartiallyIsFreeOfStress) {
       for (const double a : {0.02, 0.6}) {
         StaticSettings settings;
         settings.path = path;
-        auto e = solve(std::make_unique<AncfBeam>(1, 0.1, 4), kSection, {term}, partial_clamp(),
-                       testing::constant_heat(a), settings);
+        auto e = solve(std::make_unique<AncfBeam>(1, 0.1, 4), kStrongSection, {term},
+                       partial_clamp(), testing::constant_heat(a), settings);
         EXPECT_TRUE(e.result.completed);
         EXPECT_LT(e.model.energies(e.x).strain, 1e-20 * e.held);
         EXPECT_LT(testing::largest_strain(e.model, e.x.q, 1 + a), 1e-12 * a);
@@ -83,7 +83,7 @@ TEST(ClampedBeam, FullyIsTaperedOverABoundaryLayer) {
     std::vector<double> nodes;
     for (int i = 0; i < 60; ++i) nodes.push_back(length * i / 8);
     for (int i = 0; i <= 4; ++i) nodes.push_back(nodes[59] + (1 - nodes[59]) * (i + 1) / 5);
-    auto e = solve(std::make_unique<AncfBeam>(nodes, h), kSection, {term}, full_clamp(),
+    auto e = solve(std::make_unique<AncfBeam>(nodes, h), kStrongSection, {term}, full_clamp(),
                    testing::constant_heat(a));
     const MatrixXd q = rows_of_body(e.model, e.x.q);
     EXPECT_EQ(q(2, 1), 1);
@@ -116,7 +116,7 @@ TEST(HeldBar, PushesWithTheForceOfTheClosedForm) {
       for (const int n : {1, 3}) {
         const HoldLocation end = HoldLocation::at({0.25, 0});
         const Heat hot = testing::constant_heat(a, volume);
-        auto e = solve(std::make_unique<AncfBeam>(0.25, 0.1, n), kSection, {term},
+        auto e = solve(std::make_unique<AncfBeam>(0.25, 0.1, n), kStrongSection, {term},
                        {{kRoot, NodeVector::r, {0, 1}}, {end, NodeVector::r, {0, 1}}}, hot);
         const double strain = 0.5 * (1 / (s * s) - 1),
                      force = std::pow(s, hot.volume_exponent() - 2) * 0.01 * 7e8 * strain;

@@ -21,13 +21,7 @@ using testing::HotBeam;
 using testing::ShapeSet;
 using testing::swinging_line;
 
-const PlaneSection kSection{0.01, 1e6, 0.3, 2700};
-
-Heat warm() {
-  return testing::heat_of([](double t) {
-    return Motion{0.05 * std::sin(3 * t), 0.15 * std::cos(3 * t), -0.45 * std::sin(3 * t)};
-  });
-}
+const PlaneSection kSofterSection{0.01, 1e6, 0.3, 2700};
 
 /// Returns a plate with lines at 0.1, 0.21, 0.3 m: d driven, f free, | fixed.
 Workspace plate_of(const std::string& kinds) {
@@ -37,15 +31,15 @@ Workspace plate_of(const std::string& kinds) {
     lines.push_back(kinds[i] == 'd' ? swinging_line(at[i], 0.02, 1.3 + 0.4 * static_cast<double>(i))
                                     : MaterialLine{at[i], {}, kinds[i] == 'f'});
   std::vector<std::unique_ptr<Term>> terms;
-  terms.push_back(make_inertia(kSection));
-  terms.push_back(make_membrane(kSection));
-  terms.push_back(make_bending(kSection, 15));  // negligible quadrature error
+  terms.push_back(make_inertia(kSofterSection));
+  terms.push_back(make_membrane(kSofterSection));
+  terms.push_back(make_bending(kSofterSection, 15));  // negligible quadrature error
   Workspace model;
   Body& body = model.add_body(
       "plate",
       std::make_unique<AncfPlate>(3, ShapeSet::h16, lines, testing::uniform_lines(-0.05, 0.07, 1)),
-      kSection, std::move(terms));
-  heat(body, warm());
+      kSofterSection, std::move(terms));
+  heat(body, testing::moving_heat());
   return model;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support/energy_rate.h"
+#include "tests/support/sections.h"
 #include "tests/thermal/hot_models.h"
 
 namespace flexmorph::fem {
@@ -17,7 +18,6 @@ using testing::moving_heat;
 using testing::state_of;
 using Names = std::vector<std::string>;
 
-const PlaneSection kSection{0.03, 1e6, 0.3, 2700};
 constexpr double kNow = 0.4;
 
 const std::vector<std::pair<Names, TermDomain>> kDamped = {
@@ -27,9 +27,9 @@ const std::vector<std::pair<Names, TermDomain>> kDamped = {
 
 Workspace hot_model(const Names& names, TermDomain location) {
   Workspace model;
-  Body& body =
-      model.add_body("body", element_in(location), kSection,
-                     make_terms(names, kSection, {{"damping_time", 0.3}, {"bending_points", 12}}));
+  Body& body = model.add_body(
+      "body", element_in(location), kSoftSection,
+      make_terms(names, kSoftSection, {{"damping_time", 0.3}, {"bending_points", 12}}));
   heat(body, moving_heat());
   return model;
 }
@@ -54,7 +54,7 @@ TEST(HotDamping, FreeGrowthDissipatesNothing) {
 TEST(HotDamping, TangentsAreDerivatives) {
   for (const auto& [names, location] : kDamped) {
     const auto element = element_in(location);
-    auto terms = make_terms(names, kSection, {{"damping_time", 0.3}});
+    auto terms = make_terms(names, kSoftSection, {{"damping_time", 0.3}});
     const BodyTerm term = make_heated(std::move(terms.back()), moving_heat());
     term.heated->heat_to(kNow);
     term->prepare(*element, {}, true);

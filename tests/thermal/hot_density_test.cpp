@@ -6,22 +6,22 @@
 
 #include "fem/model/body_term.h"
 #include "fem/terms/density_term.h"
+#include "tests/support/sections.h"
 #include "tests/thermal/hot_models.h"
 
 namespace flexmorph::fem {
 namespace {
-
-const PlaneSection kSection{0.03, 1e6, 0.3, 2700};
-constexpr double kNow = 0.4;
 
 TEST(HotRows, AreTheirDensities) {
   for (const TermRow* row : term_rows()) {
     if (!row->elastic) continue;
     for (const TermDomain domain : row->domains) {
       const auto element = testing::element_in(domain);
-      const BodyTerm closed = make_heated(make_term(row->name, kSection), testing::moving_heat());
-      const BodyTerm generic = make_heated(
-          make_elastic_term(row->name, row->elastic({kSection, {}, {}})), testing::moving_heat());
+      const BodyTerm closed =
+          make_heated(make_term(row->name, kSoftSection), testing::moving_heat());
+      const BodyTerm generic =
+          make_heated(make_elastic_term(row->name, row->elastic({kSoftSection, {}, {}})),
+                      testing::moving_heat());
       const Local x = testing::state_of(*element, 1);
       VectorXd force[2];
       LocalTangent tangent[2];
@@ -29,7 +29,7 @@ TEST(HotRows, AreTheirDensities) {
       int i = 0;
       for (const BodyTerm* of : {&closed, &generic}) {
         const BodyTerm& term = *of;
-        term.heated->heat_to(kNow);
+        term.heated->heat_to(0.4);
         term->prepare(*element, {}, true);
         force[i] = testing::force_of(*term, 1, x);
         tangent[i].setZero(x.q.size(), x.q.size());

@@ -47,16 +47,16 @@ double relative(const Element& e, const MatrixXd& is, const MatrixXd& should) {
   return difference / largest;
 }
 
-struct Case {
+struct HeldBeam {
   int n;
   double angle;
 };
-class ThreeWays : public ::testing::TestWithParam<Case> {};
+class ThreeWays : public ::testing::TestWithParam<HeldBeam> {};
 INSTANTIATE_TEST_SUITE_P(Beams, ThreeWays,
-                         ::testing::Values(Case{1, 0}, Case{2, 0}, Case{6, 0},
-                                           Case{1, std::numbers::pi / 2},
-                                           Case{2, std::numbers::pi / 2},
-                                           Case{6, std::numbers::pi / 2}));
+                         ::testing::Values(HeldBeam{1, 0}, HeldBeam{2, 0}, HeldBeam{6, 0},
+                                           HeldBeam{1, std::numbers::pi / 2},
+                                           HeldBeam{2, std::numbers::pi / 2},
+                                           HeldBeam{6, std::numbers::pi / 2}));
 
 // Condition numbers are below 1e6, so that solutions have errors of 1e-10 at most; they agree to
 // 1e-11.

@@ -13,20 +13,12 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 MotionRecord motion_of(const std::string& name, const Changes& changes = {}) {
   return run_motion(PreparedCase(read(name, changes)), {}).record;
 }
 
 PathRecord path_of(const std::string& name, const Changes& changes = {}) {
   return run_path(PreparedCase(read(name, changes)), {});
-}
-
-double largest(const std::vector<double>& values) {
-  double out = 0;
-  for (const double v : values) out = std::max(out, std::abs(v));
-  return out;
 }
 
 /// Returns y, linearly interpolated where x first passes `value`.
@@ -83,10 +75,10 @@ TEST(HeldBeam, BucklesAndItsBranchIsFollowed) {
   const auto& T = r.table.at("beam.temperature");
   const auto& w = r.table.at("beam.midpoint_deflection");
   EXPECT_GT(r.table.n_rows(), 10u);
-  const double critical = kPi * kPi * 0.05 * 0.05 / 12 / 80e-6;  // 25.7 K
+  const double critical = std::numbers::pi * std::numbers::pi * 0.05 * 0.05 / 12 / 80e-6;  // 25.7 K
   EXPECT_LT(std::abs(at(T, w, 0.9 * critical)), 2e-3);
   for (const double rise : {30.0, 40.0, 48.0}) {
-    const double expected = 2 / kPi * std::sqrt(80e-6 * (rise - critical));
+    const double expected = 2 / std::numbers::pi * std::sqrt(80e-6 * (rise - critical));
     EXPECT_NEAR(-at(T, w, rise) / expected, 1, 0.03) << rise;
   }
   // The square of the deflection is linear in the temperature; it is extrapolated to zero.
@@ -209,7 +201,7 @@ TEST(HotBeam, ArcGrowsWithoutStress) {
       path_of("beam_heated_static",
               {"body.arc=1.5707963267948966", "body.heat.rise=100", "static.grows=temperatures",
                "load=[]", "joint.1.components=[\"y\"]", "body.elements=6"});
-  const double R = 2 / kPi;
+  const double R = 2 / std::numbers::pi;
   EXPECT_LE(largest(r.table.at("beam.max_elastic_strain")), 1e-11);
   // The root is held and the end keeps its height, therefore the expanded arc is rotated about the
   // root until its end is at this height.

@@ -145,7 +145,7 @@ TEST_P(BadThermal, IsRefusedAtItsLocation) {
 }
 
 constexpr const char* kFree = "free_beam_heated";
-constexpr const char* kCrank = "slider_crank_heated";
+constexpr const char* kCrankCase = "slider_crank_heated";
 constexpr const char* kHeld = "beam_heated_held";
 const std::vector<Bad> kBad = {
     {"plate_term",
@@ -182,7 +182,10 @@ const std::vector<Bad> kBad = {
      kFree,
      {"body.heat.colour=red"},
      {"duration, expansion, force, profile, rise, start, volume"}},
-    {"profile_of_drive", kCrank, {"body.heat.rise=turn"}, {"body.heat.profile", "drive", "rise"}},
+    {"profile_of_drive",
+     kCrankCase,
+     {"body.heat.rise=turn"},
+     {"body.heat.profile", "drive", "rise"}},
     {"profile_at_rest", kHeld, {"body.heat.profile=linear"}, {"[static]", "static.grows"}},
     {"force_at_rest", kHeld, {"body.heat.force=true"}, {"[static]", "inertia force"}},
     {"grows", kHeld, {"static.grows=everything"}, {"'loads', 'temperatures', 'both'"}},
@@ -208,7 +211,7 @@ const std::vector<Bad> kBad = {
      {"load=[{type=\"edge\", body=\"beam\", edge=\"free_end\", force=[0, 1]}]"},
      {"load.type = \"edge\"", "point", "line", "torque"}},
     {"design",
-     kCrank,
+     kCrankCase,
      {"design=[{body='rod', cell=0.001, components=[4, 1], max_volume=0.5, min_thickness=0.0005}]",
       "esl.every=0.1"},
      {"design.body = 'rod'", "beams"}},

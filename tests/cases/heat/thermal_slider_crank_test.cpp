@@ -13,16 +13,10 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kPi = std::numbers::pi, kCrank = 0.152, kRod = 0.304, kAlpha = 80e-6;
+constexpr double kCrank = 0.152, kRod = 0.304, kAlpha = 80e-6;
 
 MotionRecord run(const Changes& changes) {
   return run_motion(PreparedCase(read("slider_crank_heated", changes)), {}).record;
-}
-
-double largest(const std::vector<double>& values) {
-  double out = 0;
-  for (const double v : values) out = std::max(out, std::abs(v));
-  return out;
 }
 
 /// An Euler-Bernoulli rod between its pins with small deflections w(x, t) across the line between
@@ -47,7 +41,8 @@ class SmallDeflections {
                   c = rate(t + h / 2, plus(y, b, h / 2)), d = rate(t + h, plus(y, c, h));
       for (size_t i = 0; i < y.size(); ++i) y[i] += h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);
       double w = 0;
-      for (size_t n = 0; n < kModes; ++n) w += y[n] * std::sin(0.5 * kPi * double(n + 1));
+      for (size_t n = 0; n < kModes; ++n)
+        w += y[n] * std::sin(0.5 * std::numbers::pi * double(n + 1));
       out.push_back(w);
     }
     return out;
@@ -64,16 +59,18 @@ class SmallDeflections {
 
   State rate(double t, const State& y) const {
     // sin θ = -r sin φ / L with φ = π t, and the derivatives of sin θ.
-    const double phi = kPi * t, k = kCrank / kRod;
+    const double phi = std::numbers::pi * t, k = kCrank / kRod;
     const double s = -k * std::sin(phi), c = std::sqrt(1 - s * s);
-    const double s_t = -k * kPi * std::cos(phi), s_tt = -kPi * kPi * s;
+    const double s_t = -k * std::numbers::pi * std::cos(phi),
+                 s_tt = -std::numbers::pi * std::numbers::pi * s;
     const double theta_t = s_t / c, theta_tt = (s_tt + s * theta_t * theta_t) / c;
-    const double ax = -kCrank * kPi * kPi * std::cos(phi), ay = -kCrank * kPi * kPi * std::sin(phi);
+    const double ax = -kCrank * std::numbers::pi * std::numbers::pi * std::cos(phi),
+                 ay = -kCrank * std::numbers::pi * std::numbers::pi * std::sin(phi);
     const double along = ax * c + ay * s, across = -ax * s + ay * c;
     const double push = mass_ * (across * kRod / 2 + theta_tt * kRod * kRod / 3) / c * s;
     State out{};
     for (size_t n = 0; n < kModes; ++n) {
-      const double p = double(n + 1) * kPi / kRod;
+      const double p = double(n + 1) * std::numbers::pi / kRod;
       double force = -bending_ * std::pow(p, 4) * 0.5 * kRod * y[n];
       // the error of the mid-point rule is far below the tolerance of the comparison
       constexpr int kPoints = 60;
@@ -84,7 +81,7 @@ class SmallDeflections {
             push - mass_ * (along * rest - theta_t * theta_t * (kRod * kRod - x * x) / 2);
         double slope = 0;
         for (size_t j = 0; j < kModes; ++j) {
-          const double pj = double(j + 1) * kPi / kRod;
+          const double pj = double(j + 1) * std::numbers::pi / kRod;
           slope += y[j] * pj * std::cos(pj * x);
         }
         force -= dx * axial * slope * p * std::cos(p * x);

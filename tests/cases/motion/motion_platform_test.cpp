@@ -16,13 +16,13 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 const Vec2 kA(-0.4, 0), kB(0.4, 0), kToC(-0.15, 0), kToD(0.15, 0);
 
 /// Returns the position of the platform at time t, P (36), (37).
 Vec2 center(double t) {
-  const double theta = -2 * kPi * std::pow(t - 0.5, 3) + 1.5 * kPi * t - kPi / 4;
-  return {0.5 * std::cos(kPi - theta), 0.5 * std::sin(kPi - theta) + 0.4};
+  const double theta = -2 * std::numbers::pi * std::pow(t - 0.5, 3) + 1.5 * std::numbers::pi * t -
+                       std::numbers::pi / 4;
+  return {0.5 * std::cos(std::numbers::pi - theta), 0.5 * std::sin(std::numbers::pi - theta) + 0.4};
 }
 Vec2 bar1(double t) { return center(t) + kToC - kA; }
 Vec2 bar2(double t) { return center(t) + kToD - kB; }
@@ -219,7 +219,7 @@ Vec2 first_acceleration(const std::string& start) {
 // prestretched by the inertia forces of the rigid motion give the platform this acceleration.
 // Unstrained bars do not, and vibrate.
 TEST_F(MotionPlatform, PrestretchedBarsCarryThePlatformFromTheFirstMoment) {
-  const Vec2 rigid(0, 3 * kPi);
+  const Vec2 rigid(0, 3 * std::numbers::pi);
   EXPECT_LT((first_acceleration("prestretched") - rigid).norm(), 1e-3 * rigid.norm());
   EXPECT_GT((first_acceleration("rigid") - rigid).norm(), 0.1 * rigid.norm());
 }

@@ -13,13 +13,6 @@
 namespace flexmorph::test {
 namespace {
 
-io::CsvTable motion_of(const Scratch& scratch, const std::string& text) {
-  const std::string folder = scratch / "out";
-  const Ended ended = run(scratch, scratch.write("case.toml", text), folder);
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  return io::read_csv(folder + "/motion.csv");
-}
-
 /// Returns a case with a body of 2 kg and 0.3 kg m^2 attached to the ground.
 std::string body(const std::string& words, double step, double end, const std::string& more) {
   return R"toml(

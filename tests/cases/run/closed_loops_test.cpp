@@ -17,8 +17,6 @@
 namespace flexmorph::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// A case file of rigid rods that is written line by line.
 class CaseText {
  public:
@@ -112,12 +110,12 @@ TEST_P(CrankRocker, KeepsToItsBranch) {
   const auto time = table.numbers("time"), angle = table.numbers("rocker.angle");
   ASSERT_NEAR(time.back(), 1, 1e-12);
   for (size_t k = 0; k < time.size(); ++k) {
-    const double exact = rocker_angle(2 * kPi * time[k]);
-    EXPECT_NEAR(std::remainder(angle[k] - exact, 2 * kPi), 0, 1e-9) << time[k];
-    EXPECT_GT(angle[k] * 180 / kPi, 38.62);
-    EXPECT_LT(angle[k] * 180 / kPi, 135.96);
+    const double exact = rocker_angle(2 * std::numbers::pi * time[k]);
+    EXPECT_NEAR(std::remainder(angle[k] - exact, 2 * std::numbers::pi), 0, 1e-9) << time[k];
+    EXPECT_GT(angle[k] * 180 / std::numbers::pi, 38.62);
+    EXPECT_LT(angle[k] * 180 / std::numbers::pi, 135.96);
     if (std::abs(time[k] - 0.75) < 1e-9) {
-      EXPECT_NEAR(angle[k] * 180 / kPi, 131.1348, 1e-4);
+      EXPECT_NEAR(angle[k] * 180 / std::numbers::pi, 131.1348, 1e-4);
     }
   }
 }
@@ -144,7 +142,9 @@ TEST(WrongGuess, IsSaidAndAPositionIsFound) {
   const io::CsvTable table = motion(scratch);
   const auto time = table.numbers("time"), angle = table.numbers("rocker.angle");
   for (size_t k = 0; k < time.size(); ++k)
-    EXPECT_NEAR(std::remainder(angle[k] - rocker_angle(2 * kPi * time[k]), 2 * kPi), 0, 1e-9);
+    EXPECT_NEAR(std::remainder(angle[k] - rocker_angle(2 * std::numbers::pi * time[k]),
+                               2 * std::numbers::pi),
+                0, 1e-9);
   EXPECT_TRUE(testing::mentions(text.check(scratch).out, "0.812756"));
 }
 
@@ -184,7 +184,7 @@ TEST_P(CoupledWheels, TurnTogether) {
     for (int k = 0; k < wheels; ++k) {
       const auto angle = table.numbers("crank" + std::to_string(k) + ".angle");
       for (size_t i = 0; i < time.size(); ++i)
-        EXPECT_NEAR(angle[i], 0.5 + kPi * time[i], 1e-9) << integrator << " " << k;
+        EXPECT_NEAR(angle[i], 0.5 + std::numbers::pi * time[i], 1e-9) << integrator << " " << k;
     }
     const json written = run_json(scratch / "out");
     const std::string names = written["motion"]["not_unique_forces"];
@@ -196,7 +196,7 @@ TEST_P(CoupledWheels, TurnTogether) {
 }
 INSTANTIATE_TEST_SUITE_P(Sets, CoupledWheels,
                          ::testing::Values(std::pair(3, std::vector{0.0}),
-                                           std::pair(2, std::vector{0.0, kPi / 2})),
+                                           std::pair(2, std::vector{0.0, std::numbers::pi / 2})),
                          [](const auto& test) {
                            return test.param.first == 3 ? "three" : "quartered";
                          });

@@ -66,13 +66,6 @@ a = "wheel"
 damping = 0.7
 )toml";
 
-io::CsvTable motion_of(const Scratch& scratch, const std::string& text) {
-  const std::string folder = scratch / "out";
-  const Ended ended = run(scratch, scratch.write("wheels.toml", text), folder);
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  return io::read_csv(folder + "/motion.csv");
-}
-
 struct Train {
   std::string teeth, inner;
   double ratio;  // turns of the wheel per turn of the pinion

@@ -14,19 +14,6 @@
 namespace flexmorph::test {
 namespace {
 
-io::CsvTable motion_of(const Scratch& scratch, const std::string& text, const char* to = "out") {
-  const std::string folder = scratch / to;
-  const Ended ended = run(scratch, scratch.write(std::string(to) + ".toml", text), folder);
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  return io::read_csv(folder + "/motion.csv");
-}
-
-std::string number(double x) {
-  std::ostringstream out;
-  out << std::setprecision(17) << x;
-  return out.str();
-}
-
 /// Returns a hub whose angle is driven from the given start angle.
 std::string hub(double angle) {
   return R"toml(
@@ -37,7 +24,7 @@ end = 0.4
 [[drive]]
 name = "turn"
 formula = ")toml" +
-         number(angle) + R"toml( + 0.4*(8*t - sin(8*t))"
+         exact_text(angle) + R"toml( + 0.4*(8*t - sin(8*t))"
 [[hub]]
 name = "shaft"
 position = [0.1, 0.2]
@@ -59,7 +46,7 @@ poisson_ratio = 0.3
 density = 7800.0
 )toml" + flow +
          "[[joint]]\ntype = \"weld\"\nbody = \"" + name +
-         "\"\nedge = \"root\"\nto = \"shaft\"\nangle = " + number(angle) + "\n";
+         "\"\nedge = \"root\"\nto = \"shaft\"\nangle = " + exact_text(angle) + "\n";
 }
 
 const char* const kFlow = "[body.flow]\nspeed = 0.3\nmax_length = 0.15\nmin_length = 0.02\n";

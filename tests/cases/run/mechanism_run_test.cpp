@@ -18,8 +18,6 @@ namespace flexmorph::test {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kPi = std::numbers::pi;
-
 // A rod that a motor turns about its end by more than one turn; its centre of mass is 0.3 m from
 // this end. A pointer is driven equally. A plate in a hub is added so that the motion has a
 // flexible body, too.
@@ -181,7 +179,7 @@ TEST(MechanismRun, ForcesOfADrivenRodAreThoseOfMechanics) {
     EXPECT_NEAR(moment[i], wanted, 0.053 * (I + m * l * l)) << t[i];
     EXPECT_NEAR(spin[i], 0.001 * turn.acceleration, 0.053 * 0.001) << t[i];
   }
-  EXPECT_GT(angle.back(), 2 * kPi);
+  EXPECT_GT(angle.back(), 2 * std::numbers::pi);
   for (const char* name : {"hinge.moment", "motor.force_x", "motor.force_y", "rod.delta_x",
                            "rod.delta_y", "rod.delta_angle"})
     for (const double each : column(name)) EXPECT_NEAR(each, 0, 1e-9) << name;
@@ -222,7 +220,7 @@ TEST(MechanismRun, HubsAreDiscsThatTurn) {
   fem::FrameMotion frame;
   frame.origin = Vec2(2, -1);
   frame.angle = 0.7;
-  const double disc = 24 * 0.5 * 0.09 * std::sin(kPi / 12);
+  const double disc = 24 * 0.5 * 0.09 * std::sin(std::numbers::pi / 12);
   for (const bool notched : {false, true}) {
     const io::QuadMesh mesh = cases::disc_mesh(frame, 0.3, notched);
     const auto at = [&](int k) {
@@ -268,15 +266,16 @@ TEST(MechanismRun, PlatformShowsItsDesignsAndItsError) {
              turned = motion.numbers("platform.delta_angle");
   double largest = 0, when = 0;
   for (size_t i = 0; i < t.size(); ++i) {
-    const double theta = -2 * kPi * std::pow(t[i] - 0.5, 3) + 1.5 * kPi * t[i] - kPi / 4;
-    EXPECT_NEAR(dx[i], x[i] - 0.5 * std::cos(kPi - theta), 1e-14);
-    EXPECT_NEAR(dy[i], y[i] - 0.5 * std::sin(kPi - theta) - 0.4, 1e-14);
+    const double theta = -2 * std::numbers::pi * std::pow(t[i] - 0.5, 3) +
+                         1.5 * std::numbers::pi * t[i] - std::numbers::pi / 4;
+    EXPECT_NEAR(dx[i], x[i] - 0.5 * std::cos(std::numbers::pi - theta), 1e-14);
+    EXPECT_NEAR(dy[i], y[i] - 0.5 * std::sin(std::numbers::pi - theta) - 0.4, 1e-14);
     EXPECT_EQ(turned[i], angle[i]);
     if (std::abs(dy[i]) > largest) largest = std::abs(dy[i]), when = t[i];
   }
   // The platform of 2 kg starts with 0.5 θ'' = 3π m/s² upwards, carried by its two bearings.
-  EXPECT_NEAR(motion.numbers("at_C.force_y")[0] + motion.numbers("at_D.force_y")[0], -6 * kPi,
-              0.02 * 6 * kPi);
+  EXPECT_NEAR(motion.numbers("at_C.force_y")[0] + motion.numbers("at_D.force_y")[0],
+              -6 * std::numbers::pi, 0.02 * 6 * std::numbers::pi);
   const json written = run_json(folder);
   const auto& error = written["motion"]["platform_error"];
   EXPECT_EQ(error["body"], "platform");

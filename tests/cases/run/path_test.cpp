@@ -53,13 +53,6 @@ y = "y"
 )toml";
 }
 
-io::CsvTable motion_of(const Scratch& scratch, const std::string& text) {
-  const std::string folder = scratch / "out";
-  const Ended ended = run(scratch, scratch.write("path.toml", text), folder);
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  return io::read_csv(folder + "/motion.csv");
-}
-
 /// Returns the angle from the x axis of a pendulum of length 1.5 m that is released at 0.3 rad
 /// (Runge-Kutta).
 double pendulum(double end) {

@@ -20,12 +20,6 @@ namespace {
 
 constexpr double kRight = std::numbers::pi / 2;
 
-std::string number(double x) {
-  std::ostringstream out;
-  out << std::setprecision(17) << x;
-  return out.str();
-}
-
 /// A strip that is modelled as a plate or as a beam.
 struct Strip {
   std::string name;
@@ -40,25 +34,25 @@ struct Strip {
     };
     if (beam) {
       add("element", "\"ancf_beam\"\nterms = [\"inertia\", \"ecm\"]");
-      add("height", number(depth));
-      add("width", number(thickness));
+      add("height", exact_text(depth));
+      add("width", exact_text(thickness));
       add("elements", std::to_string(elements[0]));
     } else {
       add("element", "\"ancf_plate\"\nspace = \"plane\"\nterms = [\"inertia\", \"membrane\"]");
-      add("width", number(depth));
-      add("thickness", number(thickness));
+      add("width", exact_text(depth));
+      add("thickness", exact_text(thickness));
       add("elements", "[" + std::to_string(elements[0]) + ", " + std::to_string(elements[1]) + "]");
     }
-    add("length", number(length));
+    add("length", exact_text(length));
     add("density", "7800.0\npoisson_ratio = 0.3");
-    add("youngs_modulus", number(modulus));
+    add("youngs_modulus", exact_text(modulus));
     return out;
   }
 };
 
 std::string in_hub(const std::string& body, const std::string& hub, double angle = 0) {
   return "\n[[joint]]\ntype = \"weld\"\nbody = \"" + body + "\"\nedge = \"root\"\nto = \"" + hub +
-         "\"\nangle = " + number(angle) + "\n";
+         "\"\nangle = " + exact_text(angle) + "\n";
 }
 
 /// @param more  further lines of the table of the weld
@@ -69,13 +63,13 @@ std::string welded(const std::string& body, const std::string& edge, const std::
 }
 
 std::string seen(const std::string& body, double x) {
-  return "\n[[observe]]\nname = \"tip\"\nbody = \"" + body + "\"\npoint = [" + number(x) +
+  return "\n[[observe]]\nname = \"tip\"\nbody = \"" + body + "\"\npoint = [" + exact_text(x) +
          ", 0.0]\n";
 }
 
 std::string pulled(const std::string& body, double x, double force_x, double force_y) {
-  return "\n[[load]]\ntype = \"point\"\nbody = \"" + body + "\"\npoint = [" + number(x) +
-         ", 0.0]\nforce = [" + number(force_x) + ", " + number(force_y) + "]\n";
+  return "\n[[load]]\ntype = \"point\"\nbody = \"" + body + "\"\npoint = [" + exact_text(x) +
+         ", 0.0]\nforce = [" + exact_text(force_x) + ", " + exact_text(force_y) + "]\n";
 }
 
 io::CsvTable table_of(const Scratch& scratch, const std::string& text, const std::string& table) {
@@ -195,7 +189,7 @@ std::array<double, 2> corner(bool beam_column, bool beam_leg, int fine) {
       table_of(scratch,
                "title = \"A corner\"\n[static]\nsteps = 1\n[[hub]]\nname = \"wall\"\n" +
                    leg.toml() + column.toml() + in_hub("column", "wall", kRight) +
-                   welded("leg", "root", "column", "free_end", "angle = " + number(-kRight)) +
+                   welded("leg", "root", "column", "free_end", "angle = " + exact_text(-kRight)) +
                    pulled("leg", kSegment, 0, -kForce) + seen("leg", kSegment),
                "path.csv");
   return {path.numbers("leg.tip_ux").back(), path.numbers("leg.tip_uy").back()};
@@ -243,8 +237,8 @@ TEST(WeldedBodies, CloseAChain) {
       "position = [0.8, 0.0]\n" +
           left.toml() + right.toml() + beam.toml() + in_hub("left", "a", kRight) +
           in_hub("right", "b", kRight) +
-          welded("beam", "root", "left", "free_end", "angle = " + number(-kRight)) +
-          welded("beam", "free_end", "right", "free_end", "angle = " + number(-kRight)) +
+          welded("beam", "root", "left", "free_end", "angle = " + exact_text(-kRight)) +
+          welded("beam", "free_end", "right", "free_end", "angle = " + exact_text(-kRight)) +
           pulled("beam", 0, 1, 0) + seen("beam", 0.5 * kSegment),
       "path.csv");
   const double turn = 6 / (kColumn * kColumn) / (4 / kColumn + 6 / kSegment);  // θ/Δ

@@ -11,8 +11,6 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 constexpr double kEI = 2e9 * 0.01 * 8e-6 / 12, kGA = 1e9 * 0.02 * 0.01;
 
 struct Bent {

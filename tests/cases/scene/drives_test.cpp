@@ -14,8 +14,6 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TEST_F(Drives, AreReadFromFormulasTablesAndFiles) {
   const Scene s = read();
   ASSERT_EQ(s.drives.size(), 3u);
@@ -26,9 +24,10 @@ TEST_F(Drives, AreReadFromFormulasTablesAndFiles) {
   EXPECT_EQ(s.hubs[0].angle, 0);
   EXPECT_EQ(s.hubs[0].position, Vec2(0.45, 0));
   const fem::Motion length = s.drives[0].motion(0.3);
-  EXPECT_NEAR(length.value, 0.45 + 0.2 * std::sin(0.6 * kPi), 1e-15);
-  EXPECT_NEAR(length.rate, 0.4 * kPi * std::cos(0.6 * kPi), 1e-14);
-  EXPECT_NEAR(length.acceleration, -0.8 * kPi * kPi * std::sin(0.6 * kPi), 1e-13);
+  EXPECT_NEAR(length.value, 0.45 + 0.2 * std::sin(0.6 * std::numbers::pi), 1e-15);
+  EXPECT_NEAR(length.rate, 0.4 * std::numbers::pi * std::cos(0.6 * std::numbers::pi), 1e-14);
+  EXPECT_NEAR(length.acceleration,
+              -0.8 * std::numbers::pi * std::numbers::pi * std::sin(0.6 * std::numbers::pi), 1e-13);
   EXPECT_NEAR(s.drives[1].motion(0.75).value, 0.6, 1e-14);
   // The error of the quintic spline of 21 points is h^6 times a factor of order 1e-2.
   EXPECT_NEAR(s.drives[2].motion(0.333).value, std::sin(0.333), 1e-9);
@@ -154,7 +153,9 @@ TEST_F(Drives, InsertAndRemoveLinesAsTheLengthGoesUpAndDown) {
   const Scene scene = read({"hub.angle=0", "hub.angular_velocity=1", "hub.position=[0, 0]"});
   const Course course = run(scene);
   const std::vector<fem::MeshEvent>& events = course.result.events;
-  const auto rising = [](double length) { return std::asin((length - 0.45) / 0.2) / (2 * kPi); };
+  const auto rising = [](double length) {
+    return std::asin((length - 0.45) / 0.2) / (2 * std::numbers::pi);
+  };
   std::vector<std::pair<double, fem::MeshChange>> expected;
   for (const double length : {0.5, 0.55, 0.6})
     expected.emplace_back(rising(length), fem::MeshChange::insertion);

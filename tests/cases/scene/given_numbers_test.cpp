@@ -13,8 +13,6 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TEST_F(Drives, NumbersMayHaveUnitsAndConstants) {
   const Changes changes = {
       "constants.h=\"5 mm\"",     "body.length=450 mm",      "body.width=10 cm",
@@ -39,8 +37,9 @@ TEST_F(Drives, MayUseOtherDrives) {
   const Scene s = read({"drive.out.formula=\"L0 + swing*turn*side\"",
                         "drive.turn.table=", "drive.turn.formula=\"sin(2*pi*t)\""});
   for (const double t : {0.05, 0.41, 0.73}) {
-    const double u = std::sin(2 * kPi * t), du = 2 * kPi * std::cos(2 * kPi * t),
-                 ddu = -4 * kPi * kPi * u;
+    const double u = std::sin(2 * std::numbers::pi * t),
+                 du = 2 * std::numbers::pi * std::cos(2 * std::numbers::pi * t),
+                 ddu = -4 * std::numbers::pi * std::numbers::pi * u;
     const double v = std::sin(t), dv = std::cos(t), ddv = -v;
     const fem::Motion x = s.drives[0].motion(t);
     // The spline of 21 points has errors of the order h^6, h^5 and h^4.

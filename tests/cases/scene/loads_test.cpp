@@ -16,8 +16,6 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// A body of 2 kg and 0.5 kg m^2 that moves freely from the origin.
 const std::string kFlying = R"toml(
 [time]
@@ -70,7 +68,7 @@ void expect_order_two(const std::string& text,
 }
 
 double angle_miss(const fem::State& x, double angle) {
-  return std::abs(std::remainder(std::atan2(x.q[3], x.q[2]) - angle, 2 * kPi));
+  return std::abs(std::remainder(std::atan2(x.q[3], x.q[2]) - angle, 2 * std::numbers::pi));
 }
 
 // Reference: T = 3 sin 4t on 0.5 kg m^2 turns the body by the double integral, 6/4 (t - sin(4t)/4).

@@ -117,12 +117,12 @@ TEST(PassiveRegions, NarrowLocationsOfTheirOwnAreGiven) {
   EXPECT_TRUE(mmc::length_scale_violations_of(r.problem, r.exported({}), 0.05).empty());
 }
 
-struct Bad {
+struct BadRegion {
   const char* name;
   const char* region;
   std::vector<std::string> parts;  ///< Parts of the message after its location.
 };
-class PassiveRegionRefused : public ::testing::TestWithParam<Bad> {};
+class PassiveRegionRefused : public ::testing::TestWithParam<BadRegion> {};
 TEST_P(PassiveRegionRefused, AndSaysWhy) {
   for (const std::string kind : {"solid", "void"}) {
     const std::string change = "design." + kind + "=[" + GetParam().region + "]";
@@ -139,22 +139,24 @@ TEST_P(PassiveRegionRefused, AndSaysWhy) {
 INSTANTIATE_TEST_SUITE_P(
     Table, PassiveRegionRefused,
     ::testing::Values(
-        Bad{"none", "{cells=2}", {"box", "disc", "polygon", "strip"}},
-        Bad{"two", "{disc=[0.1, 0.1, 0.1], box=[0, 0, 1, 1]}", {"box", "disc", "polygon", "strip"}},
-        Bad{"crossing", "{polygon=[0, 0, 0.3, 0.3, 0.3, 0, 0, 0.3]}", {"polygon", "cross"}},
-        Bad{"flat", "{polygon=[0.1, 0.1, 0.2, 0.1, 0.3, 0.1]}", {"area", "polygon"}},
-        Bad{"collinear", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.3, 0.3]}", {"polygon", "cross"}},
-        Bad{"two_corners", "{polygon=[0.1, 0.1, 0.2, 0.2]}", {"polygon", "list", "6"}},
-        Bad{"odd", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.1, 0.3, 0.7]}", {"polygon", "corners"}},
-        Bad{"no_radius", "{disc=[0.1, 0.1, 0]}", {"disc", "positive", "radius"}},
-        Bad{"negative_radius", "{disc=[0.1, 0.1, -0.1]}", {"disc", "positive", "radius"}},
-        Bad{"nan", "{disc=[0.1, nan, 0.1]}", {"disc", "finite"}},
-        Bad{"disc_of_two", "{disc=[0.1, 0.1]}", {"disc", "list of 3"}},
-        Bad{"outside", "{disc=[3, 3, 0.1]}", {"disc", "cell", "[0, 1] x [0, 1] [m]"}},
+        BadRegion{"none", "{cells=2}", {"box", "disc", "polygon", "strip"}},
+        BadRegion{
+            "two", "{disc=[0.1, 0.1, 0.1], box=[0, 0, 1, 1]}", {"box", "disc", "polygon", "strip"}},
+        BadRegion{"crossing", "{polygon=[0, 0, 0.3, 0.3, 0.3, 0, 0, 0.3]}", {"polygon", "cross"}},
+        BadRegion{"flat", "{polygon=[0.1, 0.1, 0.2, 0.1, 0.3, 0.1]}", {"area", "polygon"}},
+        BadRegion{"collinear", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.3, 0.3]}", {"polygon", "cross"}},
+        BadRegion{"two_corners", "{polygon=[0.1, 0.1, 0.2, 0.2]}", {"polygon", "list", "6"}},
+        BadRegion{"odd", "{polygon=[0.1, 0.1, 0.2, 0.2, 0.1, 0.3, 0.7]}", {"polygon", "corners"}},
+        BadRegion{"no_radius", "{disc=[0.1, 0.1, 0]}", {"disc", "positive", "radius"}},
+        BadRegion{"negative_radius", "{disc=[0.1, 0.1, -0.1]}", {"disc", "positive", "radius"}},
+        BadRegion{"nan", "{disc=[0.1, nan, 0.1]}", {"disc", "finite"}},
+        BadRegion{"disc_of_two", "{disc=[0.1, 0.1]}", {"disc", "list of 3"}},
+        BadRegion{"outside", "{disc=[3, 3, 0.1]}", {"disc", "cell", "[0, 1] x [0, 1] [m]"}},
         // within the bounding box of the bracket, but outside of its domain
-        Bad{"in_the_corner", "{disc=[0.8, 0.8, 0.1]}", {"disc", "cell", "[0, 1] x [0, 1] [m]"}},
-        Bad{"small", "{disc=[0.1, 0.1, 1e-4]}", {"disc", "cell", "[0, 1] x [0, 1] [m]"}},
-        Bad{"cells_of_a_disc", "{disc=[0.1, 0.1, 0.1], cells=3}", {"cells = 3", "strip"}}),
+        BadRegion{
+            "in_the_corner", "{disc=[0.8, 0.8, 0.1]}", {"disc", "cell", "[0, 1] x [0, 1] [m]"}},
+        BadRegion{"small", "{disc=[0.1, 0.1, 1e-4]}", {"disc", "cell", "[0, 1] x [0, 1] [m]"}},
+        BadRegion{"cells_of_a_disc", "{disc=[0.1, 0.1, 0.1], cells=3}", {"cells = 3", "strip"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(PassiveRegions, AreNotSolidAndVoid) {

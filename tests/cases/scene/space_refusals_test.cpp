@@ -9,7 +9,7 @@
 namespace flexmorph::cases {
 namespace {
 
-std::string complaint(const std::string& name, const Changes& changes) {
+std::string refusal_in_space(const std::string& name, const Changes& changes) {
   try {
     require_buildable(PreparedCase(read(name, changes)));
   } catch (const Error& e) {
@@ -19,20 +19,20 @@ std::string complaint(const std::string& name, const Changes& changes) {
   return "";
 }
 
-constexpr const char* kRootSleeve = "joint=[{type='sleeve', body='strip', edge='root'}]";
+constexpr const char* kSleeveAtRoot = "joint=[{type='sleeve', body='strip', edge='root'}]";
 
-struct Bad {
+struct BadInSpace {
   const char* what;
   const char* scene;
   Changes changes;
   std::vector<std::string> parts;  ///< Parts of the message after its location.
 };
-void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.what; }
+void PrintTo(const BadInSpace& bad, std::ostream* out) { *out << bad.what; }
 
-class BadSpace : public ::testing::TestWithParam<Bad> {};
+class BadSpace : public ::testing::TestWithParam<BadInSpace> {};
 
 TEST_P(BadSpace, IsRefusedWithOneMessage) {
-  const std::string message = complaint(GetParam().scene, GetParam().changes);
+  const std::string message = refusal_in_space(GetParam().scene, GetParam().changes);
   ASSERT_FALSE(message.empty()) << GetParam().changes[0];
   EXPECT_TRUE(
       testing::mentions_all(message, GetParam().parts,
@@ -40,14 +40,14 @@ TEST_P(BadSpace, IsRefusedWithOneMessage) {
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
-constexpr const char *kPendulum = "plate_pendulum", *kTwist = "square_plate_twist",
+constexpr const char *kPlatePendulum = "plate_pendulum", *kTwist = "square_plate_twist",
                      *kRoll = "cantilever_roll_up", *kSleeve = "elastic_sleeve",
                      *kDeploy = "deploying_plate", *kPlanar = "rotating_plate_v01";
 
-const Bad kBad[] = {
-    {"unknown_space", kPendulum, {"body.space=hyper"}, {"'plane', 'space'"}},
+const BadInSpace kBad[] = {
+    {"unknown_space", kPlatePendulum, {"body.space=hyper"}, {"'plane', 'space'"}},
     {"two_spaces",
-     kPendulum,
+     kPlatePendulum,
      {"body=[{name='a', element='ancf_plate', space='space', terms=['inertia', 'membrane', "
       "'bending'], length=1, width=1, thickness=1, density=1, youngs_modulus=1, poisson_ratio=0, "
       "elements=[1, 1]}, {name='b', element='ancf_plate', space='plane', terms=['inertia']}]"},
@@ -57,19 +57,19 @@ const Bad kBad[] = {
      {"body.terms=[\"inertia\", \"bending\"]"},
      {"'inertia', 'membrane', 'membrane_assumed', 'damping'"}},
     {"space_without_bending",
-     kPendulum,
+     kPlatePendulum,
      {"body.terms=[\"inertia\", \"membrane\"]"},
      {"bending", "membrane_assumed"}},
     {"two_membranes",
-     kPendulum,
+     kPlatePendulum,
      {"body.terms=[\"inertia\", \"membrane\", \"membrane_assumed\", \"bending\"]"},
      {"membrane_assumed", "alternatives"}},
-    {"planar_gravity", kPendulum, {"gravity=[0, -9.81]"}, {"3", "[m/s^2]"}},
+    {"planar_gravity", kPlatePendulum, {"gravity=[0, -9.81]"}, {"3", "[m/s^2]"}},
     {"unknown_integrator",
-     kPendulum,
+     kPlatePendulum,
      {"time.integrator=euler"},
      {"'generalized_alpha', 'energy_momentum', 'minimal_coordinates'"}},
-    {"start_without_a_hub", kPendulum, {"time.start=prestretched"}, {"prestretched", "hubs"}},
+    {"start_without_a_hub", kPlatePendulum, {"time.start=prestretched"}, {"prestretched", "hubs"}},
     {"energy_momentum_with_free_lines",
      kSleeve,
      {"time.integrator=energy_momentum"},
@@ -79,25 +79,28 @@ const Bad kBad[] = {
      {"time.integrator=minimal_coordinates"},
      {"[[body.line]]", "generalized_alpha", "minimal_coordinates"}},
     {"tolerance_of_another_integrator",
-     kPendulum,
+     kPlatePendulum,
      {"time.tolerance=1e-8"},
      {"adaptive", "minimal_coordinates"}},
     {"tolerance_too_small",
-     kPendulum,
+     kPlatePendulum,
      {"time.integrator=minimal_coordinates", "time.tolerance=1e-15"},
      {"1e-13", "0.1"}},
     {"energy_momentum_with_pressure",
-     kPendulum,
+     kPlatePendulum,
      {"time.integrator=energy_momentum", "load=[{type='pressure', body='plate', pressure=1}]"},
      {"load.type = 'pressure'", "time.integrator", "generalized_alpha"}},
     {"unknown_joint",
-     kPendulum,
+     kPlatePendulum,
      {"joint.0.type=hinge"},
      {"'slider', 'angle_drive', 'distance', 'point_drive', 'gear', 'path'", "'revolute'",
       "'revolute'"}},
-    {"pin_outside", kPendulum, {"joint.0.point=[0.4, 0]"}, {"'plate'", "[0, 0.3] x [0, 0.3] [m]"}},
+    {"pin_outside",
+     kPlatePendulum,
+     {"joint.0.point=[0.4, 0]"},
+     {"'plate'", "[0, 0.3] x [0, 0.3] [m]"}},
     {"pin_without_point",
-     kPendulum,
+     kPlatePendulum,
      {"joint=[{type='pin', body='plate'}]"},
      {"joint.point", "missing", "[m]"}},
     {"unknown_component", kTwist, {"joint.1.components=[\"w\"]"}, {"'x', 'y', 'z'"}},
@@ -140,15 +143,15 @@ const Bad kBad[] = {
      {"body.line.max_length = 0.2", "index = 0", "free = true"}},
     {"limits_that_chatter",
      kSleeve,
-     {"body.line=[{index=0, free=true, max_length=0.2, min_length=0.1}]", kRootSleeve},
+     {"body.line=[{index=0, free=true, max_length=0.2, min_length=0.1}]", kSleeveAtRoot},
      {"body.line.max_length = 0.2", "min_length", "0.4"}},
     {"limits_that_are_passed_at_the_start",
      kSleeve,
-     {"body.line=[{index=0, free=true, max_length=0.1}]", kRootSleeve},
+     {"body.line=[{index=0, free=true, max_length=0.1}]", kSleeveAtRoot},
      {"body.line.max_length = 0.1", "0.1333 m", "min_length"}},
     {"limits_and_other_lines",
      kSleeve,
-     {"body.line=[{index=0, free=true, max_length=0.2}, {index=3, at=0.42}]", kRootSleeve},
+     {"body.line=[{index=0, free=true, max_length=0.2}, {index=3, at=0.42}]", kSleeveAtRoot},
      {"body.line.0", "root", "[[body.line]]"}},
     {"edge_by_a_number_that_changes",
      kSleeve,
@@ -156,10 +159,13 @@ const Bad kBad[] = {
       "joint=[{type='sleeve', body='strip', edge='line 3'}]"},
      {"joint.edge = 'line 3'", "'root'"}},
     {"free_line_without_a_joint",
-     kPendulum,
+     kPlatePendulum,
      {"body.line=[{index=3, free=true}]"},
      {"line 3", "[[joint]]", "sleeve", "weld", "line_drive"}},
-    {"line_of_nothing", kPendulum, {"body.line=[{index=3}]"}, {"body.line", "free = true", "`at`"}},
+    {"line_of_nothing",
+     kPlatePendulum,
+     {"body.line=[{index=3}]"},
+     {"body.line", "free = true", "`at`"}},
     {"lines_out_of_order",
      kSleeve,
      {"body.line=[{index=3, free=true, at=0.6}]"},

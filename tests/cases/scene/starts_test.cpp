@@ -158,7 +158,7 @@ const Case kCases[] = {
      {"rigid_body.a.angular_velocity = 0", "'motor'"}},
 };
 
-Scene scene_of(const std::string& text) {
+Scene rigid_scene_of(const std::string& text) {
   const Scratch scratch;
   return read_scene(io::CaseFile(
       scratch.write("case.toml", "[time]\nend = 0.05\nstep = 1e-3\nstart = \"rigid\"\n" + text)));
@@ -186,7 +186,7 @@ class FreeMechanisms : public ::testing::TestWithParam<Case> {};
 
 TEST_P(GivenVelocities, AreKeptOrRefused) {
   const Case& c = GetParam();
-  const Scene scene = scene_of(c.text);
+  const Scene scene = rigid_scene_of(c.text);
   if (!c.refused.empty()) {
     try {
       build_mechanism(scene);
@@ -222,7 +222,7 @@ TEST_P(GivenVelocities, AreKeptOrRefused) {
 TEST_P(FreeMechanisms, KeepTheirMomentum) {
   const Case& c = GetParam();
   for (const char* integrator : {"generalized_alpha", "energy_momentum"}) {
-    const Scene scene = scene_of(c.text);
+    const Scene scene = rigid_scene_of(c.text);
     Mechanism m = build_mechanism(scene);
     m.motion.integrator = integrator;
     Vec2 first(0, 0);
@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(Mechanisms, FreeMechanisms, ::testing::ValuesIn(free_on
 // the second with the given w₂ = 3. The kinetic energy T is least for
 //   T = ½ (J + m a²) w₁² + ½ m (2a w₁ + a w₂)² + ½ J w₂²,   w₁ = -2 m a² w₂ / (J + 5 m a²).
 TEST(Starts, WhatIsNotGivenHasTheLeastKineticEnergy) {
-  const Scene scene = scene_of(kCases[10].text);
+  const Scene scene = rigid_scene_of(kCases[10].text);
   ASSERT_STREQ(kCases[10].name, "double_pendulum_second");
   Mechanism m = build_mechanism(scene);
   const fem::State x = start_of(m);
@@ -259,7 +259,7 @@ TEST(Starts, WhatIsNotGivenHasTheLeastKineticEnergy) {
 // A hub and two plates rotate as one body. Reference: T = ½ J ω² with J about the hub by Steiner's
 // theorem.
 TEST(Starts, PlatesTurnWithTheirHub) {
-  const Scene scene = scene_of(kCases[4].text);
+  const Scene scene = rigid_scene_of(kCases[4].text);
   Mechanism m = build_mechanism(scene);
   const fem::State x = start_of(m);
   const double plate = 2700 * 0.01 * 0.05 * 0.5, middle = 0.2 + 0.25;

@@ -16,7 +16,7 @@
 namespace flexmorph::cases {
 namespace {
 
-std::string complaint(const std::string& name, const Changes& changes) {
+std::string static_refusal(const std::string& name, const Changes& changes) {
   try {
     const Scene scene = read(name, changes);
     build_static_loads(scene, build_problems(scene).front());
@@ -141,7 +141,7 @@ TEST(StaticScene, SymmetryThatIsAskedForIsThereOrRefused) {
   EXPECT_EQ(symmetry("rotating_plate_v01", {}), "none");
   const Changes low = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'"};
   const std::string asked = "--set design.symmetry='y': ";
-  EXPECT_TRUE(testing::mentions_all(complaint("short_beam", low),
+  EXPECT_TRUE(testing::mentions_all(static_refusal("short_beam", low),
                                     {"loads", "y = 0.5 m", "load case", "symmetry_despite_loads"},
                                     asked));
   const Changes enforced = {"load.0.force.0.point=[2.0, 0.25]", "design.symmetry='y'",
@@ -159,9 +159,9 @@ TEST(StaticScene, SymmetryThatIsAskedForIsThereOrRefused) {
            {{"design.symmetry='y'", "design.void=[{ box = [0.5, 0.0, 0.75, 0.25] }]"},
             {"void", "y = 0.5 m"}},
            {{"design.symmetry_despite_loads=true"}, {"symmetry = \"x\"", "\"y\"", "\"both\""}}})
-    EXPECT_TRUE(testing::mentions_all(complaint("short_beam", changes), parts,
+    EXPECT_TRUE(testing::mentions_all(static_refusal("short_beam", changes), parts,
                                       "--set " + changes[0] + ": "));
-  EXPECT_TRUE(testing::mentions_all(complaint("l_bracket", {"design.symmetry='y'"}),
+  EXPECT_TRUE(testing::mentions_all(static_refusal("l_bracket", {"design.symmetry='y'"}),
                                     {"domain", "y = 0.5 m"}, asked));
   try {
     symmetry("rotating_plate_v01", {"design.symmetry='y'"});
@@ -234,53 +234,54 @@ TEST(StaticScene, StartsFromAFileOfComponents) {
       EXPECT_NEAR(back[k].parameters()[p], two[k].parameters()[p], 1e-14);
 }
 
-struct Bad {
+struct BadStatic {
   const char* name;
   Changes changes;
   std::vector<std::string> parts;  ///< Parts of the message after its location.
 };
-class StaticSceneRefuses : public ::testing::TestWithParam<Bad> {};
+class StaticSceneRefuses : public ::testing::TestWithParam<BadStatic> {};
 TEST_P(StaticSceneRefuses, AndSaysWhy) {
-  const std::string said = complaint("short_beam", GetParam().changes);
+  const std::string said = static_refusal("short_beam", GetParam().changes);
   EXPECT_TRUE(testing::mentions_all(said, GetParam().parts,
                                     location_in(said, shipped("short_beam"), GetParam().changes)));
 }
 INSTANTIATE_TEST_SUITE_P(
     Table, StaticSceneRefuses,
     ::testing::Values(
-        Bad{"motion", {"time.end=1"}, {"[time]", "[domain]"}},
-        Bad{"size", {"domain.size=[2.0, -1.0]"}, {"positive", "[m]"}},
-        Bad{"both",
-            {"domain.polygon=[0.0, 0.0, 1.0, 0.0, 1.0, 1.0]"},
-            {"domain", "size", "polygon", "outline"}},
-        Bad{"edge", {"support.edge=\"rear\""}, {"'left', 'right', 'bottom', 'top'"}},
-        Bad{"axis", {"support.fix=[\"z\"]"}, {"'x', 'y'"}},
-        Bad{"goal", {"design.minimize=\"weight\""}, {"'compliance', 'volume', 'mass'"}},
-        Bad{"limit", {"design.max_compliance=10.0"}, {"minimize", "volume"}},
-        Bad{"no_limit", {"design.minimize=\"volume\""}, {"design.max_compliance", "missing"}},
-        Bad{"start", {"design.start=\"nowhere.csv\""}, {"nowhere.csv"}},
-        Bad{"far_load",
-            {"load.force.point=[9.0, 0.5]", "load.force.edge=", "load.force.box="},
-            {"[0, 2] x [0, 1] [m]"}},
-        Bad{"unknown", {"domain.depth=1.0"}, {"size", "thickness", "youngs_modulus"}}),
+        BadStatic{"motion", {"time.end=1"}, {"[time]", "[domain]"}},
+        BadStatic{"size", {"domain.size=[2.0, -1.0]"}, {"positive", "[m]"}},
+        BadStatic{"both",
+                  {"domain.polygon=[0.0, 0.0, 1.0, 0.0, 1.0, 1.0]"},
+                  {"domain", "size", "polygon", "outline"}},
+        BadStatic{"edge", {"support.edge=\"rear\""}, {"'left', 'right', 'bottom', 'top'"}},
+        BadStatic{"axis", {"support.fix=[\"z\"]"}, {"'x', 'y'"}},
+        BadStatic{"goal", {"design.minimize=\"weight\""}, {"'compliance', 'volume', 'mass'"}},
+        BadStatic{"limit", {"design.max_compliance=10.0"}, {"minimize", "volume"}},
+        BadStatic{"no_limit", {"design.minimize=\"volume\""}, {"design.max_compliance", "missing"}},
+        BadStatic{"start", {"design.start=\"nowhere.csv\""}, {"nowhere.csv"}},
+        BadStatic{"far_load",
+                  {"load.force.point=[9.0, 0.5]", "load.force.edge=", "load.force.box="},
+                  {"[0, 2] x [0, 1] [m]"}},
+        BadStatic{"unknown", {"domain.depth=1.0"}, {"size", "thickness", "youngs_modulus"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // The load lies within the bounding box, but not within the domain: this is detected on the mesh,
 // and the key is named.
 TEST(StaticScene, LoadsOutsideOfAPolygonAreRefusedWhereTheyStand) {
-  const std::string said = complaint(
+  const std::string said = static_refusal(
       "l_bracket", {"load.force.point=[0.9, 0.9]", "load.force.edge=", "load.force.box="});
   EXPECT_TRUE(
       testing::mentions_all(said, {"material", "0.0125 m"}, "--set load.force.point=[0.9, 0.9]: "));
 }
 
 TEST(StaticScene, NamesOfLoadsAreUnlike) {
-  EXPECT_TRUE(testing::mentions_all(complaint("bridge", {"load.1.name=left"}),
+  EXPECT_TRUE(testing::mentions_all(static_refusal("bridge", {"load.1.name=left"}),
                                     {"another", "'left'"}, "--set load.1.name=left: "));
   // A default name made from the number of the load counts, too.
-  EXPECT_TRUE(testing::mentions_all(complaint("bridge", {"load.0.name=load_2", "load.1.name="}),
-                                    {"load.1", "another", "'load_2'"}, shipped("bridge") + ":"));
-  EXPECT_EQ(complaint("bridge", {"load.0.name=one", "load.1.name=two"}), "");
+  EXPECT_TRUE(
+      testing::mentions_all(static_refusal("bridge", {"load.0.name=load_2", "load.1.name="}),
+                            {"load.1", "another", "'load_2'"}, shipped("bridge") + ":"));
+  EXPECT_EQ(static_refusal("bridge", {"load.0.name=one", "load.1.name=two"}), "");
 }
 
 // A rigid body cannot be measured or designed; the message says that it is rigid.

@@ -11,6 +11,7 @@
 #include "fem/dynamics/starts/driven_frame.h"
 #include "fem/dynamics/starts/start_parts.h"
 #include "fem/solve/statics.h"
+#include "tests/cases/scene/loaded_scenes.h"
 #include "tests/cases/scenes.h"
 #include "tests/io/scratch.h"
 #include "tests/support/errors.h"
@@ -18,12 +19,7 @@
 namespace flexmorph::cases {
 namespace {
 
-constexpr double kG = 9.81;
-
-Scene scene_of(const std::string& text) {
-  const Scratch scratch;
-  return read_scene(io::CaseFile(scratch.write("case.toml", text)));
-}
+constexpr double kGravity = 9.81;
 
 std::string timed(const std::string& start) {
   return "gravity = [0.0, -9.81]\n[time]\nend = 0.5\nstep = 1e-3\n" +
@@ -40,12 +36,12 @@ std::string lever(double rest_angle, double stiffness = 50) {
 double angle_of_lever(double rest_angle, double stiffness = 50) {
   double angle = rest_angle;
   for (int i = 0; i < 50; ++i)
-    angle -= (stiffness * (angle - rest_angle) + 0.5 * kG * std::cos(angle)) /
-             (stiffness - 0.5 * kG * std::sin(angle));
+    angle -= (stiffness * (angle - rest_angle) + 0.5 * kGravity * std::cos(angle)) /
+             (stiffness - 0.5 * kGravity * std::sin(angle));
   return angle;
 }
 
-fem::State start_of(Mechanism& m) {
+fem::State steady_start_of(Mechanism& m) {
   return fem::start_state(m.model, m.moving_roots, 0, m.motion.start, m.motion.body_poses);
 }
 
@@ -53,7 +49,7 @@ TEST(SteadyStart, LeverHangsInItsSpring) {
   EXPECT_NEAR(angle_of_lever(-0.3), -0.390707, 1e-6);
   for (const double rest : {-0.3, 0.5, -1.5, -3.0}) {
     Mechanism m = build_mechanism(scene_of(timed("steady") + lever(rest)));
-    const fem::State x = start_of(m);
+    const fem::State x = steady_start_of(m);
     EXPECT_NEAR(fem::frame_of(m.model.body("lever"), x).angle, angle_of_lever(rest), 1e-9) << rest;
     EXPECT_EQ(x.v.norm(), 0);
     // The lever stays there.
@@ -82,8 +78,8 @@ TEST(SteadyStart, MassHangsInALinearSpring) {
       "angle_b = -1.5707963267948966\n"
       "[[spring]]\ntype = \"linear\"\na = \"ground\"\npoint_a = [0.0, 0.0]\nb = \"mass\"\n"
       "stiffness = 40.0\nfree_length = 1.0\n"));
-  const fem::State x = start_of(m);
-  EXPECT_NEAR(fem::frame_of(m.model.body("mass"), x).origin.y(), -(1 + 2 * kG / 40), 1e-9);
+  const fem::State x = steady_start_of(m);
+  EXPECT_NEAR(fem::frame_of(m.model.body("mass"), x).origin.y(), -(1 + 2 * kGravity / 40), 1e-9);
 }
 
 void expect_refused(const std::string& text, const std::vector<std::string>& parts) {
@@ -110,7 +106,7 @@ TEST(SteadyStart, WhatItDoesNotFitIsRefused) {
                "\n[[rigid_body]]\nname = \"a\"\nmass = 1.0\nsize = [0.4, 0.1]\n[[joint]]\ntype = "
                "\"slider\"\na = \"ground\"\nangle_a = 1.5707963267948966\nb = \"a\"\nangle_b = "
                "1.5707963267948966\n"));
-  EXPECT_THROW(start_of(m), Error);
+  EXPECT_THROW(steady_start_of(m), Error);
 }
 
 // With a steady start the growing plate (uniform material on the elements of the case) follows its
@@ -150,7 +146,8 @@ TEST(SteadyStart, DesignedPlateIsBentByCoriolisForces) {
   const mmc::BodyProblem problem = build_problems(scene).at(0);
   m.model.set_factors(m.model.bodies()[0],
                       mmc::dynamic_factors(problem, problem.design.components()));
-  EXPECT_NEAR(tip_deflection(m.model, m.moving_roots[0], start_of(m)), -0.399e-3, 0.02 * 0.399e-3);
+  EXPECT_NEAR(tip_deflection(m.model, m.moving_roots[0], steady_start_of(m)), -0.399e-3,
+              0.02 * 0.399e-3);
 }
 
 // Without time.start, a case with zero prescribed velocities starts at rest, a case with prescribed
@@ -188,7 +185,7 @@ TEST(AutomaticStart, PlateInAStillHubHangsAsACantilever) {
       "2700.0\nyoungs_modulus = 1e9\npoisson_ratio = 0.0\nelements = [20, 1]\n[[joint]]\ntype = "
       "\"weld\"\nbody = \"plate\"\nedge = \"root\"\nto = \"hub\"\n"));
   EXPECT_EQ(m.motion.start, fem::Start::at_rest);
-  const double sag = -density * kG * std::pow(length, 4) / (8 * modulus * width * width / 12);
+  const double sag = -density * kGravity * std::pow(length, 4) / (8 * modulus * width * width / 12);
   fem::integrate(m.model, m.moving_roots, m.motion, [&](const fem::MotionStep& step) {
     EXPECT_NEAR(tip_deflection(step.model, m.moving_roots[0], step.x), sag, 0.02 * std::abs(sag));
   });

@@ -25,7 +25,7 @@ using testing::first_difference;
 using testing::ShapeSet;
 using testing::swinging_line;
 
-const PlaneSection kSection{0.01, 1e6, 0.3, 2700};
+const PlaneSection kSofterSection{0.01, 1e6, 0.3, 2700};
 
 /// Returns lines at 0.1, 0.21, 0.3 and 0.45 m: d driven, f free, | fixed.
 std::vector<MaterialLine> lines(const std::string& kinds) {
@@ -37,40 +37,40 @@ std::vector<MaterialLine> lines(const std::string& kinds) {
   return out;
 }
 
-struct Case {
+struct MovingTerms {
   std::string lines;
   std::string terms;  ///< the letters m, a, b, i, g, s select terms in model_of()
   bool designed = false;
   ShapeSet shapes = ShapeSet::h16;
   int dim = 3;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const MovingTerms& c, std::ostream* out) {
   *out << c.lines << ' ' << c.terms << (c.designed ? " designed" : "")
        << (c.shapes == ShapeSet::h12 ? " h12" : "") << ' ' << c.dim << 'd';
 }
 
-Workspace model_of(const Case& c) {
+Workspace model_of(const MovingTerms& c) {
   VectorXd load = VectorXd::LinSpaced(c.dim, 3, 5);
   std::vector<std::unique_ptr<Term>> terms;
   for (const char term : c.terms) {
-    if (term == 'm') terms.push_back(make_membrane(kSection));
-    if (term == 'a') terms.push_back(make_assumed_membrane(kSection));
+    if (term == 'm') terms.push_back(make_membrane(kSofterSection));
+    if (term == 'a') terms.push_back(make_assumed_membrane(kSofterSection));
     // With this number of points the quadrature error of the rational bending energy is negligible.
-    if (term == 'b') terms.push_back(make_bending(kSection, c.designed ? 8 : 15));
-    if (term == 'i') terms.push_back(make_inertia(kSection));
-    if (term == 'g') terms.push_back(make_gravity(kSection, load));
+    if (term == 'b') terms.push_back(make_bending(kSofterSection, c.designed ? 8 : 15));
+    if (term == 'i') terms.push_back(make_inertia(kSofterSection));
+    if (term == 'g') terms.push_back(make_gravity(kSofterSection, load));
     if (term == 's') terms.push_back(make_surface_load(2 * load));
   }
   Workspace model;
   Body& body = model.add_body("plate",
                               std::make_unique<AncfPlate>(c.dim, c.shapes, lines(c.lines),
                                                           testing::uniform_lines(-0.05, 0.07, 2)),
-                              kSection, std::move(terms));
+                              kSofterSection, std::move(terms));
   if (c.designed) model.set_factors(body, testing::random_factors(5));
   return model;
 }
 
-class AnyMotion : public ::testing::TestWithParam<Case> {};
+class AnyMotion : public ::testing::TestWithParam<MovingTerms> {};
 
 TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
   Workspace model = model_of(GetParam());
@@ -85,38 +85,42 @@ TEST_P(AnyMotion, ChangesTheEnergyByThePowers) {
       EXPECT_GT(std::abs(p.feed) + std::abs(p.inflow), 1e-4 * std::abs(rate));
   }
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, AnyMotion,
-                         ::testing::Values(
-                             // Driven root: each term alone, then several together.
-                             Case{"d|||", "m"}, Case{"d|||", "a"}, Case{"d|||", "b"},
-                             Case{"d|||", "i"}, Case{"d|||", "g"}, Case{"d|||", "s"},
-                             Case{"d|||", "abigs"}, Case{"d|||", "mbig", false, ShapeSet::h12},
-                             Case{"d|||", "migs", false, ShapeSet::h16, 2},
-                             // A moving end, and moving inner lines, where the bending strain is
-                             // discontinuous.
-                             Case{"|||d", "abig"}, Case{"dd|d", "mbig"},
-                             // Free lines: the root, several lines, and a line next to driven ones.
-                             Case{"f|||", "mb"}, Case{"f|||", "i"}, Case{"f|||", "g"},
-                             Case{"f|||", "mbig"}, Case{"f|||", "mig", false, ShapeSet::h12, 2},
-                             Case{"f|ff", "mbig"}, Case{"df|d", "mbig"}));
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, AnyMotion,
+    ::testing::Values(
+        // Driven root: each term alone, then several together.
+        MovingTerms{"d|||", "m"}, MovingTerms{"d|||", "a"}, MovingTerms{"d|||", "b"},
+        MovingTerms{"d|||", "i"}, MovingTerms{"d|||", "g"}, MovingTerms{"d|||", "s"},
+        MovingTerms{"d|||", "abigs"}, MovingTerms{"d|||", "mbig", false, ShapeSet::h12},
+        MovingTerms{"d|||", "migs", false, ShapeSet::h16, 2},
+        // A moving end, and moving inner lines, where the bending strain is
+        // discontinuous.
+        MovingTerms{"|||d", "abig"}, MovingTerms{"dd|d", "mbig"},
+        // Free lines: the root, several lines, and a line next to driven ones.
+        MovingTerms{"f|||", "mb"}, MovingTerms{"f|||", "i"}, MovingTerms{"f|||", "g"},
+        MovingTerms{"f|||", "mbig"}, MovingTerms{"f|||", "mig", false, ShapeSet::h12, 2},
+        MovingTerms{"f|ff", "mbig"}, MovingTerms{"df|d", "mbig"}));
 // With varying scale factors the strain energy at the root jumps when the boundary of a cell
 // passes; therefore the differences remain inside a cell.
 INSTANTIATE_TEST_SUITE_P(Designed, AnyMotion,
-                         ::testing::Values(Case{"d|||", "m", true}, Case{"d|||", "a", true},
-                                           Case{"d|||", "b", true}, Case{"d|||", "ig", true},
-                                           Case{"d|||", "migs", true, ShapeSet::h12, 2}));
+                         ::testing::Values(MovingTerms{"d|||", "m", true},
+                                           MovingTerms{"d|||", "a", true},
+                                           MovingTerms{"d|||", "b", true},
+                                           MovingTerms{"d|||", "ig", true},
+                                           MovingTerms{"d|||", "migs", true, ShapeSet::h12, 2}));
 
 // Membrane strains are continuous across a moving inner n-line; therefore the flow power alone
 // closes the energy balance there.
 TEST(FlowPower, OfMembranesIsThatOfAnInnerNLine) {
   for (const bool assumed : {false, true}) {
     std::vector<std::unique_ptr<Term>> terms;
-    terms.push_back(assumed ? make_assumed_membrane(kSection) : make_membrane(kSection));
+    terms.push_back(assumed ? make_assumed_membrane(kSofterSection)
+                            : make_membrane(kSofterSection));
     auto across = testing::uniform_lines(-0.05, 0.07, 2);
     across[1] = swinging_line(0.01, 0.02, 1.7);
     Workspace model;
     model.add_body("plate", std::make_unique<AncfPlate>(3, ShapeSet::h16, lines("|d|"), across),
-                   kSection, std::move(terms));
+                   kSofterSection, std::move(terms));
     model.prepare(0.0);
     const State rest = model.reference();
     const testing::SmoothMotion motion(rest.q, 0.02 * model.scales().cwiseInverse(), 7);
@@ -139,11 +143,11 @@ TEST(FlowPower, OfMembranesIsThatOfAnInnerNLine) {
 TEST(Powers, RefuseNLinesThatMove) {
   Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
-  terms.push_back(make_membrane(kSection));
+  terms.push_back(make_membrane(kSofterSection));
   auto across = testing::uniform_lines(-0.05, 0.07, 1);
   across[0] = swinging_line(-0.05, 0.01, 1);
   model.add_body("plate", std::make_unique<AncfPlate>(2, ShapeSet::h16, lines("||||"), across),
-                 kSection, std::move(terms));
+                 kSofterSection, std::move(terms));
   model.prepare(0.3);
   State x = model.reference();
   x.t = 0.3;

@@ -23,8 +23,6 @@ using testing::error_of;
 using testing::linear;
 using testing::mentions;
 
-constexpr double kPi = std::numbers::pi;
-
 Vec2 polar(double length, double angle) { return length * Vec2(std::cos(angle), std::sin(angle)); }
 double direction(const Vec2& from, const Vec2& to) {
   return std::atan2(to.y() - from.y(), to.x() - from.x());
@@ -79,7 +77,9 @@ double angle_of(const MotionStep& step, const std::string& body) {
 Vec2 origin_of(const MotionStep& step, const std::string& body) {
   return step.x.q.segment<2>(step.model.body(body).first_dof);
 }
-double difference(double a, double b) { return std::abs(std::remainder(a - b, 2 * kPi)); }
+double difference(double a, double b) {
+  return std::abs(std::remainder(a - b, 2 * std::numbers::pi));
+}
 
 /// Returns the angle of the rocker of the crank-rocker with links of 1 (ground), 0.5, 1.2 and 0.8 m
 /// on its open branch, from Freudenstein's equation k₁ cos ψ - k₂ cos φ + k₃ = cos (φ - ψ).
@@ -115,21 +115,21 @@ class CrankRocker : public ::testing::TestWithParam<StepCase> {};
 TEST_P(CrankRocker, StaysOnItsBranch) {
   const auto& [step, integrator] = GetParam();
   double error = 0, smallest = 10, largest = 0, last = 0;
-  crank_rocker(0.5053609157141864, 0.8127561994224595, linear(0, 2 * kPi))
+  crank_rocker(0.5053609157141864, 0.8127561994224595, linear(0, 2 * std::numbers::pi))
       .move(1, step, integrator, [&](const MotionStep& s) {
         const double angle = angle_of(s, "rocker");
-        error = std::max(error, difference(angle, rocker_angle(2 * kPi * s.x.t)));
+        error = std::max(error, difference(angle, rocker_angle(2 * std::numbers::pi * s.x.t)));
         smallest = std::min(smallest, angle);
         largest = std::max(largest, angle);
         last = s.x.t;
         if (std::abs(s.x.t - 0.75) < 1e-9) {
-          EXPECT_NEAR(angle * 180 / kPi, 131.1348, 1e-4);
+          EXPECT_NEAR(angle * 180 / std::numbers::pi, 131.1348, 1e-4);
         }
       });
   EXPECT_EQ(last, 1);
   EXPECT_LT(error, 1e-9);
-  EXPECT_GT(smallest * 180 / kPi, 38.6247);
-  EXPECT_LT(largest * 180 / kPi, 135.9515);
+  EXPECT_GT(smallest * 180 / std::numbers::pi, 38.6247);
+  EXPECT_LT(largest * 180 / std::numbers::pi, 135.9515);
 }
 INSTANTIATE_TEST_SUITE_P(
     Steps, CrankRocker,
@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
 // rocker changes its direction there within milliseconds, whatever the step is.
 TEST(ClosedLoops, BranchesThatAlmostMeetAreDistinguished) {
   const testing::FourBar bar{.r = 0.2999, .l = 0.5, .s = 0.3, .g = 0.5};
-  const Course angle = linear(0.8, 2 * kPi);
+  const Course angle = linear(0.8, 2 * std::numbers::pi);
   for (const char* integrator : {"generalized_alpha", "minimal_coordinates"})
     for (const double step : {1e-3, 0.05, 0.1}) {
       const Vec2 a = bar.crank_pin(0.8), b = bar.rocker_pin(0.8), c(bar.g, 0);
@@ -207,7 +207,7 @@ Rods coupled_wheels(int wheels, const std::vector<double>& rods, double error = 
       out.pin("pin" + std::to_string(i) + std::to_string(k), crank(k), polar(0.2, rods[i]), rod,
               {k * 1.0 + (k == wheels - 1 ? error : 0), 0});
   }
-  out.motor("crank0", linear(start, kPi));
+  out.motor("crank0", linear(start, std::numbers::pi));
   return out;
 }
 
@@ -228,8 +228,8 @@ TEST_P(CoupledWheels, TurnTogether) {
       coupled_wheels(number, rods).move(2, step, integrator, [&, n = number](const MotionStep& s) {
         last = s.x.t;
         for (int k = 0; k < n; ++k)
-          error = std::max(error,
-                           difference(angle_of(s, "crank" + std::to_string(k)), 0.5 + kPi * s.x.t));
+          error = std::max(error, difference(angle_of(s, "crank" + std::to_string(k)),
+                                             0.5 + std::numbers::pi * s.x.t));
       });
   EXPECT_EQ(last, 2);
   EXPECT_LT(error, 1e-9);
@@ -237,29 +237,29 @@ TEST_P(CoupledWheels, TurnTogether) {
   for (const char* name : {"pin00", "pin01", "axle1"})
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 }
-INSTANTIATE_TEST_SUITE_P(Sets, CoupledWheels,
-                         ::testing::Values(Wheels{3, {0.0}, 1e-2, "generalized_alpha"},
-                                           Wheels{3, {0.0}, 1e-3, "generalized_alpha"},
-                                           Wheels{3, {0.0}, 1e-2, "energy_momentum"},
-                                           Wheels{3, {0.0}, 1e-2, "minimal_coordinates"},
-                                           Wheels{2, {0.0, kPi / 2}, 1e-2, "generalized_alpha"},
-                                           Wheels{2, {0.0, kPi / 2}, 1e-2, "minimal_coordinates"}),
-                         [](const auto& test) {
-                           return formatted("%d_wheels_%.0f_ms_", test.param.number,
-                                            1e3 * test.param.step) +
-                                  test.param.integrator;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Sets, CoupledWheels,
+    ::testing::Values(Wheels{3, {0.0}, 1e-2, "generalized_alpha"},
+                      Wheels{3, {0.0}, 1e-3, "generalized_alpha"},
+                      Wheels{3, {0.0}, 1e-2, "energy_momentum"},
+                      Wheels{3, {0.0}, 1e-2, "minimal_coordinates"},
+                      Wheels{2, {0.0, std::numbers::pi / 2}, 1e-2, "generalized_alpha"},
+                      Wheels{2, {0.0, std::numbers::pi / 2}, 1e-2, "minimal_coordinates"}),
+    [](const auto& test) {
+      return formatted("%d_wheels_%.0f_ms_", test.param.number, 1e3 * test.param.step) +
+             test.param.integrator;
+    });
 
 // The motion is tried from several angles. From a right angle, a step ends exactly at a dead
 // centre.
 TEST(ClosedLoops, CoupledWheelsPassDeadCentresAtAnyTime) {
   for (const char* integrator : {"generalized_alpha", "minimal_coordinates"})
-    for (const double start : {kPi / 2, 0.7, 1.1, 1.3, 2.0, 2.9, 3.1}) {
-      if (start == kPi / 2 && integrator != std::string("generalized_alpha")) continue;
+    for (const double start : {std::numbers::pi / 2, 0.7, 1.1, 1.3, 2.0, 2.9, 3.1}) {
+      if (start == std::numbers::pi / 2 && integrator != std::string("generalized_alpha")) continue;
       double error = 0;
       coupled_wheels(3, {0.0}, 0, start).move(1, 0.01, integrator, [&](const MotionStep& s) {
         for (const char* crank : {"crank1", "crank2"})
-          error = std::max(error, difference(angle_of(s, crank), start + kPi * s.x.t));
+          error = std::max(error, difference(angle_of(s, crank), start + std::numbers::pi * s.x.t));
       });
       EXPECT_LT(error, 1e-9) << integrator << " from " << start;
     }
@@ -283,18 +283,18 @@ TEST(ClosedLoops, TrammelDrawsAnEllipse) {
   rods.rod("crank", L, {0, 0}, start);
   rods.rod("rod", 0.1, {a * std::cos(start), b * std::sin(start)}, -start);
   rods.rod("block_x", 0.1, {2 * L * std::cos(start), 0}, 0);
-  rods.rod("block_y", 0.1, {0, 2 * L * std::sin(start)}, kPi / 2);
+  rods.rod("block_y", 0.1, {0, 2 * L * std::sin(start)}, std::numbers::pi / 2);
   rods.pin("axle", "", {0, 0}, "crank");
   rods.pin("middle", "crank", {L, 0}, "rod", {b - L, 0});
   rods.slot("slot_x", 0, "block_x");
-  rods.slot("slot_y", kPi / 2, "block_y");
+  rods.slot("slot_y", std::numbers::pi / 2, "block_y");
   rods.pin("end_x", "block_x", {0, 0}, "rod", {b, 0});
   rods.pin("end_y", "block_y", {0, 0}, "rod", {-a, 0});
-  rods.motor("crank", linear(start, kPi));
+  rods.motor("crank", linear(start, std::numbers::pi));
   for (const char* integrator : {"generalized_alpha", "minimal_coordinates"}) {
     double error = 0;
     rods.move(2, 1e-2, integrator, [&](const MotionStep& s) {
-      const double angle = start + kPi * s.x.t;
+      const double angle = start + std::numbers::pi * s.x.t;
       const Vec2 exact(a * std::cos(angle), b * std::sin(angle));
       error = std::max(error, (origin_of(s, "rod") - exact).norm());
     });
@@ -333,7 +333,7 @@ TEST(ClosedLoops, PeaucellierDrawsALineWithASpareRod) {
   rods.pin("spare_C", "crank", {r, 0}, "spare");
   rods.pin("spare_A", "OA", {L, 0}, "spare", {l, 0});
   rods.motor("crank", [](double t) {
-    const double w = 2 * kPi;
+    const double w = 2 * std::numbers::pi;
     return Motion{-0.8 * std::cos(w * t), 0.8 * w * std::sin(w * t), 0.8 * w * w * std::cos(w * t)};
   });
   double error = 0, low = 0, high = 0, force = 0, unequal = 0;
@@ -364,7 +364,7 @@ TEST(ClosedLoops, PeaucellierDrawsALineWithASpareRod) {
 // All rods lie on one line, from which no correction leads away. Of the two positions that other
 // starts find, the one with the rods turned counterclockwise is taken.
 TEST(OtherStarts, FindThePositionOfAFlatCrankRocker) {
-  const RigidKinematics flat(crank_rocker(0, 0, linear(0, 2 * kPi)).all);
+  const RigidKinematics flat(crank_rocker(0, 0, linear(0, 2 * std::numbers::pi)).all);
   RigidMotion motion(flat);
   EXPECT_TRUE(mentions(motion.kinematics().remark(), "'rocker'")) << motion.kinematics().remark();
   EXPECT_NEAR(motion.kinematics().frame("coupler", motion.at(0)).angle,
@@ -373,7 +373,7 @@ TEST(OtherStarts, FindThePositionOfAFlatCrankRocker) {
   EXPECT_LT(difference(motion.kinematics().frame("rocker", motion.at(0)).angle, rocker_angle(0)),
             1e-10);
   EXPECT_EQ(undriven_degrees_of_freedom(flat), 1);
-  const RigidKinematics near(crank_rocker(0.5, 0.8, linear(0, 2 * kPi)).all);
+  const RigidKinematics near(crank_rocker(0.5, 0.8, linear(0, 2 * std::numbers::pi)).all);
   EXPECT_TRUE(RigidMotion(near).kinematics().remark().empty());
 }
 

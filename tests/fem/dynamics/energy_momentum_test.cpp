@@ -13,6 +13,7 @@
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -20,9 +21,8 @@ namespace {
 using testing::first_difference;
 using testing::ShapeSet;
 
-const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 const Vec2 kGravity(1.3, -9.81);
-constexpr double kStep = 0.02;
+constexpr double kMeanStep = 0.02;
 
 /// A term with stretches instead of Green-Lagrange strains: objective, neither quadratic nor
 /// polynomial in q.
@@ -83,19 +83,19 @@ class Stretch final : public Term, public MeanForceTerm {
   GramGradient gradient_;
 };
 
-struct Case {
+struct ElasticTerm {
   std::string name;
   ShapeSet shapes;
   bool designed;
   std::unique_ptr<Term> (*make)();
 };
-std::unique_ptr<Term> membrane() { return make_membrane(kSection); }
+std::unique_ptr<Term> membrane() { return make_membrane(kThinSection); }
 std::unique_ptr<Term> stretch() { return std::make_unique<Stretch>(); }
-std::unique_ptr<Term> inertia() { return make_inertia(kSection); }
-std::unique_ptr<Term> weight() { return make_gravity(kSection, kGravity); }
+std::unique_ptr<Term> inertia() { return make_inertia(kThinSection); }
+std::unique_ptr<Term> weight() { return make_gravity(kThinSection, kGravity); }
 std::unique_ptr<Term> point_mass() { return make_point_mass(0.5, {0.3, 0.06}, kGravity); }
 
-class MeanForce : public ::testing::TestWithParam<Case> {
+class MeanForce : public ::testing::TestWithParam<ElasticTerm> {
  protected:
   MeanForce() {
     if (GetParam().designed) factors = testing::random_factors(5);
@@ -110,8 +110,8 @@ class MeanForce : public ::testing::TestWithParam<Case> {
     const LocalRows rate =
         40 * (testing::rows_of_element(plate, testing::random_shape(plate, size, 3), e) - x.start);
     x.mean.q = 0.5 * (x.start + x.end);
-    x.mean.v = (x.end - x.start) / kStep;
-    x.mean.a = 2 / kStep * (x.mean.v - rate);
+    x.mean.v = (x.end - x.start) / kMeanStep;
+    x.mean.a = 2 / kMeanStep * (x.mean.v - rate);
     return x;
   }
   double energy(int e, const LocalRows& q, const LocalRows& v) const {
@@ -119,10 +119,10 @@ class MeanForce : public ::testing::TestWithParam<Case> {
     return term->kinetic_energy(e, x) + term->strain_energy(e, x) + term->potential_energy(e, x);
   }
   double start_energy(int e, const LocalStep& x) const {
-    return energy(e, x.start, x.mean.v - 0.5 * kStep * x.mean.a);
+    return energy(e, x.start, x.mean.v - 0.5 * kMeanStep * x.mean.a);
   }
   double end_energy(int e, const LocalStep& x) const {
-    return energy(e, x.end, x.mean.v + 0.5 * kStep * x.mean.a);
+    return energy(e, x.end, x.mean.v + 0.5 * kMeanStep * x.mean.a);
   }
   LocalRows force(int e, const LocalStep& x) const {
     LocalRows f = LocalRows::Zero(x.start.rows(), 2);
@@ -142,17 +142,17 @@ class MeanForce : public ::testing::TestWithParam<Case> {
   ScaleFactors factors;
   BodyTerm term = GetParam().make();
 };
-INSTANTIATE_TEST_SUITE_P(Terms, MeanForce,
-                         ::testing::Values(Case{"membrane_h12", ShapeSet::h12, false, membrane},
-                                           Case{"membrane_h16", ShapeSet::h16, false, membrane},
-                                           Case{"membrane_h16_designed", ShapeSet::h16, true,
-                                                membrane},
-                                           Case{"stretch_h12", ShapeSet::h12, false, stretch},
-                                           Case{"stretch_h16", ShapeSet::h16, false, stretch},
-                                           Case{"inertia", ShapeSet::h16, true, inertia},
-                                           Case{"gravity", ShapeSet::h16, true, weight},
-                                           Case{"point_mass", ShapeSet::h16, false, point_mass}),
-                         [](const auto& c) { return c.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Terms, MeanForce,
+    ::testing::Values(ElasticTerm{"membrane_h12", ShapeSet::h12, false, membrane},
+                      ElasticTerm{"membrane_h16", ShapeSet::h16, false, membrane},
+                      ElasticTerm{"membrane_h16_designed", ShapeSet::h16, true, membrane},
+                      ElasticTerm{"stretch_h12", ShapeSet::h12, false, stretch},
+                      ElasticTerm{"stretch_h16", ShapeSet::h16, false, stretch},
+                      ElasticTerm{"inertia", ShapeSet::h16, true, inertia},
+                      ElasticTerm{"gravity", ShapeSet::h16, true, weight},
+                      ElasticTerm{"point_mass", ShapeSet::h16, false, point_mass}),
+    [](const auto& c) { return c.param.name; });
 
 // The tolerance is round-off of the energies and of the products of force and step.
 TEST_P(MeanForce, WorkOverAStepIsTheDifferenceOfTheEnergy) {
@@ -232,7 +232,8 @@ TEST_P(MeanForce, TangentIsTheDerivativeByTheEnd) {
   const int e = 2;
   const LocalStep x = step(e, 0.2);
   LocalTangent k = LocalTangent::Zero(x.start.size(), x.start.size());
-  term.with_mean_force().add_mean_tangent(e, x, {0.5, 1 / kStep, 2 / (kStep * kStep)}, k);
+  term.with_mean_force().add_mean_tangent(e, x, {0.5, 1 / kMeanStep, 2 / (kMeanStep * kMeanStep)},
+                                          k);
   const auto vectors = plate.vectors(e);
   const double largest = k.cwiseAbs().maxCoeff();
   if (elastic()) {
@@ -245,8 +246,8 @@ TEST_P(MeanForce, TangentIsTheDerivativeByTheEnd) {
           LocalStep y = x;
           y.end.data()[j] += s;
           y.mean.q.data()[j] += 0.5 * s;
-          y.mean.v.data()[j] += s / kStep;
-          y.mean.a.data()[j] += 2 * s / (kStep * kStep);
+          y.mean.v.data()[j] += s / kMeanStep;
+          y.mean.a.data()[j] += 2 * s / (kMeanStep * kMeanStep);
           LocalRows f = force(e, y);
           return VectorXd(Eigen::Map<VectorXd>(f.data(), f.size()));
         },
@@ -274,7 +275,7 @@ TEST(IntegratorTable, NamesWhatItKnowsAndWhatATermLacks) {
   model.add_body("plate",
                  std::make_unique<AncfPlate>(2, ShapeSet::h12, testing::uniform_lines(0, 1, 1),
                                              testing::uniform_lines(0, 1, 1)),
-                 kSection, std::move(terms));
+                 kThinSection, std::move(terms));
   const auto message = [](const std::function<void()>& f) -> std::string {
     try {
       f();

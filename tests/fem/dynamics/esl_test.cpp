@@ -1,7 +1,7 @@
 // Shows that equivalent static loads have the right contents: deformation and acceleration in the
-// axes of the hub agree with differences in time of the positions of material points while the hub
-// accelerates and the material flows; the rigid continuation inside the hub and the forces of point
-// masses are right.
+// axes of the turning_hub agree with differences in time of the positions of material points while
+// the turning_hub accelerates and the material flows; the rigid continuation inside the turning_hub
+// and the forces of point masses are right.
 #include "fem/dynamics/esl.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Motion root_line(double t) {
   return {kRoot - 0.2 * s - 0.3 * s * s, -0.2 - 0.6 * s, -0.6};
 }
 
-FrameMotion hub(double t) {
+FrameMotion turning_hub(double t) {
   FrameMotion f;
   f.origin = {0.2 * std::sin(t), 0.1 * t * t};
   f.origin_rate = {0.2 * std::cos(t), 0.2 * t};
@@ -38,7 +38,7 @@ FrameMotion hub(double t) {
 }
 
 Eigen::Matrix2d turn(double t) {
-  const double angle = hub(t).angle;
+  const double angle = turning_hub(t).angle;
   Eigen::Matrix2d r;
   r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
   return r;
@@ -72,7 +72,8 @@ class Esl : public ::testing::Test {
   EslSet load(const State& x, std::span<const AttachedMass> masses = {},
               const VectorXd& gravity = {}, std::span<const AttachedForce> forces = {}) {
     model.prepare(x.t);
-    return equivalent_static_load(model, x, {"plate", hub, 1, 0.01}, grid, masses, forces, gravity);
+    return equivalent_static_load(model, x, {"plate", turning_hub, 1, 0.01}, grid, masses, forces,
+                                  gravity);
   }
 
   Workspace model;
@@ -96,7 +97,7 @@ TEST_F(Esl, FieldsAreThoseOfMaterialPointsInTheHubsAxes) {
     for (int j = 0; j <= grid.ny; j += 5) {
       const Vec2 at = grid.node_position(i, j);
       const int entry = 2 * grid.node(i, j);
-      const Vec2 u = turn(kTime).transpose() * (position(kTime, at) - hub(kTime).origin) -
+      const Vec2 u = turn(kTime).transpose() * (position(kTime, at) - turning_hub(kTime).origin) -
                      (at - Vec2(kRoot, 0));
       EXPECT_LT((set.deformation.segment<2>(entry) - u).norm(), 1e-14);
       const Vec2 r_tt =
@@ -108,9 +109,9 @@ TEST_F(Esl, FieldsAreThoseOfMaterialPointsInTheHubsAxes) {
     EXPECT_EQ(set.deformation.segment(2 * grid.node(i, 0), 2 * (grid.ny + 1)).norm(), 0);
 }
 
-// The acceleration of the rigid, extending body is a formula inside the hub and comes from the
-// shape functions outside. Both must equal the second difference of the motion R(t) (X - m₀(t)) +
-// o(t).
+// The acceleration of the rigid, extending body is a formula inside the turning_hub and comes from
+// the shape functions outside. Both must equal the second difference of the motion R(t) (X - m₀(t))
+// + o(t).
 TEST_F(Esl, RigidBodyContinuesIntoTheHub) {
   const auto rigid = [&](double t) {
     VectorXd q(model.n_dofs());
@@ -121,7 +122,7 @@ TEST_F(Esl, RigidBodyContinuesIntoTheHub) {
       Vec2 local = reference.row(k).transpose();
       if (element.is_position(k)) local.x() -= root_line(t).value;
       q.segment<2>(2 * k) =
-          turn(t) * local + (element.is_position(k) ? hub(t).origin : Vec2::Zero());
+          turn(t) * local + (element.is_position(k) ? turning_hub(t).origin : Vec2::Zero());
     }
     return q;
   };
@@ -132,7 +133,7 @@ TEST_F(Esl, RigidBodyContinuesIntoTheHub) {
       const Vec2 at = grid.node_position(i, j);
       const auto position = [&](double dt) {
         const double t = kTime + dt;
-        return Vec2(turn(t) * (at - Vec2(root_line(t).value, 0)) + hub(t).origin);
+        return Vec2(turn(t) * (at - Vec2(root_line(t).value, 0)) + turning_hub(t).origin);
       };
       const Vec2 a = turn(kTime).transpose() * second_difference(position, 1e-3);
       EXPECT_LT((set.acceleration.segment<2>(2 * grid.node(i, j)) - a).norm(), 1e-7) << i;
@@ -155,8 +156,8 @@ TEST_F(Esl, PointMassPushesWithItsInertia) {
   EXPECT_THROW(load(x, {&between, 1}), Error);
 }
 
-// Distributed forces have the prescribed resultant and moment in the axes of the hub, also if no
-// node is at the middle of the edge.
+// Distributed forces have the prescribed resultant and moment in the axes of the turning_hub, also
+// if no node is at the middle of the edge.
 TEST_F(Esl, SpreadForcesKeepResultantAndMoment) {
   model.prepare(kTime);
   const State x = testing::SmoothMotion(model.reference().q, 0.1 * model.scales().cwiseInverse(), 3)
@@ -197,7 +198,8 @@ TEST_F(Esl, RootBetweenTwoColumnsIsOnTheNearerOne) {
     EXPECT_EQ(set.root_column, std::lround(root));
     const Vec2 at = grid.node_position(20, 3);
     const Vec2 r = point_motion(model.body("plate"), x, at).position;
-    const Vec2 u = turn(t).transpose() * (r - hub(t).origin) - (at - Vec2(root_line(t).value, 0));
+    const Vec2 u =
+        turn(t).transpose() * (r - turning_hub(t).origin) - (at - Vec2(root_line(t).value, 0));
     EXPECT_LT((set.deformation.segment<2>(2 * grid.node(20, 3)) - u).norm(), 1e-14);
   }
 }
@@ -231,14 +233,14 @@ class HotEsl : public Esl {
       const double x = X.x() - root_line(t).value;
       const Eigen::Vector4d y = across(x, X.y());
       const Vec2 local(k % 4 == 0 ? s * x : k % 4 == 1 ? s : 0.0, y[k % 4]);
-      q.segment<2>(2 * k) = turn(t) * local + (k % 4 == 0 ? hub(t).origin : Vec2(0, 0));
+      q.segment<2>(2 * k) = turn(t) * local + (k % 4 == 0 ? turning_hub(t).origin : Vec2(0, 0));
     }
     return q;
   }
 };
 
 // A hot body expands freely. Its inertia loads use the expanded positions: they must equal the
-// second difference of the motion R (1 + a) (X - m₀) + o, also in the hub.
+// second difference of the motion R (1 + a) (X - m₀) + o, also in the turning_hub.
 TEST_F(HotEsl, FreeGrowthIsNoDeformation) {
   const auto stretch = [](double t) { return 1 + kExpansion * temperature(t).value; };
   const State x = state([&](double t) {
@@ -254,7 +256,8 @@ TEST_F(HotEsl, FreeGrowthIsNoDeformation) {
       const Vec2 at = grid.node_position(i, j);
       const auto position = [&](double dt) {
         const double t = kTime + dt;
-        return Vec2(turn(t) * stretch(t) * (at - Vec2(root_line(t).value, 0)) + hub(t).origin);
+        return Vec2(turn(t) * stretch(t) * (at - Vec2(root_line(t).value, 0)) +
+                    turning_hub(t).origin);
       };
       const Vec2 a = turn(kTime).transpose() * second_difference(position, 1e-3);
       EXPECT_LT((set.acceleration.segment<2>(2 * grid.node(i, j)) - a).norm(), 1e-7) << i;
@@ -289,13 +292,13 @@ TEST_F(HotEsl, TheEdgeHoldsBackWhatItDoesNotTakePartIn) {
         const Vec2 w(0, i < set.root_column ? 0.0 : -missing * X.y());
         EXPECT_LT((set.deformation.segment<2>(2 * grid.node(i, j)) - w).norm(), 1e-14) << i;
       }
-    // The continuation into the hub agrees with the plate at the root line, which is between two
-    // columns.
+    // The continuation into the turning_hub agrees with the plate at the root line, which is
+    // between two columns.
     const auto rigid = [&](double t, const Vec2& X) {
       const double s = 1 + kExpansion * temperature(t).value;
       const double s_y = 1 + share * kExpansion * temperature(t).value;
       const Vec2 p = X - Vec2(root_line(t).value, 0);
-      return Vec2(turn(t) * Vec2(s * p.x(), s_y * p.y()) + hub(t).origin);
+      return Vec2(turn(t) * Vec2(s * p.x(), s_y * p.y()) + turning_hub(t).origin);
     };
     const Vec2 X = grid.node_position(2, 9);
     const Vec2 expected = turn(kTime).transpose() *
@@ -305,8 +308,8 @@ TEST_F(HotEsl, TheEdgeHoldsBackWhatItDoesNotTakePartIn) {
 }
 
 // The restrained stretch of the far edge is a where a joint keeps its width, for any rotation of
-// the plate in the axes of the hub; it is the rest of a where the edge expands partly; it is zero
-// where the edge expands freely or where only a load acts on it.
+// the plate in the axes of the turning_hub; it is the rest of a where the edge expands partly; it
+// is zero where the edge expands freely or where only a load acts on it.
 TEST_F(HotEsl, TheFarEdgeIsHeldByItsJoint) {
   const double length = kEnd - kRoot, a = 0.08;
   const AttachedForce joint{{kEnd, 0}, true, {3, -5}, 0.7, true};

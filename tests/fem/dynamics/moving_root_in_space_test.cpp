@@ -15,7 +15,7 @@ namespace {
 
 using testing::ShapeSet;
 
-const PlaneSection kSection{0.01, 1e7, 0.3, 2700};
+const PlaneSection kSoftPlate{0.01, 1e7, 0.3, 2700};
 
 /// Returns a plate that slides out of a hub at 0.3 m/s, with the boundary element `first` and `n`
 /// others of `length`. With `free_root` the root line is free.
@@ -27,14 +27,14 @@ Workspace plate(double first, double length, int n, int bending_points = 5,
   if (free_root) m[0] = {-first, {}, true};
   for (int i = 0; i <= n; ++i) m.push_back({length * i, {}});
   std::vector<std::unique_ptr<Term>> terms;
-  terms.push_back(make_membrane(kSection));
-  terms.push_back(make_bending(kSection, bending_points));
-  terms.push_back(make_inertia(kSection));
+  terms.push_back(make_membrane(kSoftPlate));
+  terms.push_back(make_bending(kSoftPlate, bending_points));
+  terms.push_back(make_inertia(kSoftPlate));
   Workspace model;
   model.add_body("plate",
                  std::make_unique<AncfPlate>(3, ShapeSet::h16, std::move(m),
                                              testing::uniform_lines(0, 0.1, 2)),
-                 kSection, std::move(terms));
+                 kSoftPlate, std::move(terms));
   return model;
 }
 

@@ -22,8 +22,6 @@ using testing::Course;
 using testing::first_difference;
 using testing::linear;
 
-constexpr double kPi = std::numbers::pi;
-
 /// Returns a slender rod that extends from its origin along its first axis.
 MechanismBody rod(const std::string& name, double length, const Vec2& at, double angle) {
   MechanismBody out;
@@ -72,7 +70,7 @@ RigidMechanism four_bar(const testing::FourBar& bar, const Course& angle) {
 
 TEST(RigidMotion, FourBarClosesAtAllTimes) {
   const testing::FourBar bar;
-  const Course angle = linear(0.7, 2 * kPi);
+  const Course angle = linear(0.7, 2 * std::numbers::pi);
   const RigidKinematics kinematics(four_bar(bar, angle));
   EXPECT_EQ(undriven_degrees_of_freedom(kinematics), 1);
   RigidMotion motion(kinematics);
@@ -86,7 +84,7 @@ TEST(RigidMotion, FourBarClosesAtAllTimes) {
     EXPECT_LT((end - closed(0)).norm(), 1e-12) << t;
     const Vec2 rate = rocker.angle_rate * Vec2(-arm.y(), arm.x());
     EXPECT_LT((rate - first_difference(closed, 1e-3)).norm(), 1e-7) << t;
-    EXPECT_NEAR(kinematics.coordinate_of("motor", x).rate, 2 * kPi, 1e-11);
+    EXPECT_NEAR(kinematics.coordinate_of("motor", x).rate, 2 * std::numbers::pi, 1e-11);
   }
   EXPECT_NO_THROW(require_motion(kinematics, 1));
 }
@@ -101,7 +99,8 @@ TEST(RigidMotion, IsRefusedWhereItsDrivesCannotLeadIt) {
 
 TEST(RigidMotion, CopiesOfAModelAreIndependent) {
   const testing::FourBar bar;
-  auto original = std::make_unique<RigidKinematics>(four_bar(bar, linear(0.7, 2 * kPi)));
+  auto original =
+      std::make_unique<RigidKinematics>(four_bar(bar, linear(0.7, 2 * std::numbers::pi)));
   RigidMotion alone(*original);
   const VectorXd early = alone.at(0.2).q, late = alone.at(0.9).q;
   RigidMotion one(*original), other(*original);
@@ -244,7 +243,7 @@ TEST(InverseKinematics, OfAPolarArmIsItsClosedForm) {
   for (double t = 0; t < 2; t += 0.01234) {
     const Vec2 r(x(t).value, y(t).value), v(x(t).rate, y(t).rate);
     const double angle = std::atan2(r.y(), r.x());
-    turned += std::remainder(angle - turned, 2 * kPi);
+    turned += std::remainder(angle - turned, 2 * std::numbers::pi);
     EXPECT_NEAR(drives[0](t).value, r.norm(), 1e-11) << t;
     EXPECT_NEAR(drives[0](t).rate, r.dot(v) / r.norm(), 1e-10) << t;
     EXPECT_NEAR(drives[1](t).value, turned, 1e-11) << t;
@@ -256,7 +255,7 @@ TEST(InverseKinematics, OfAPolarArmIsItsClosedForm) {
       const auto value = [&](double s) { return drive(t + s).rate; };
       EXPECT_NEAR(drive(t).acceleration, first_difference(value, 1e-3), 1e-6) << t;
     }
-  EXPECT_GT(turned, 2 * kPi);
+  EXPECT_GT(turned, 2 * std::numbers::pi);
 }
 
 TEST(InverseKinematics, ADriveThatDrivesNothingIsRefused) {
@@ -275,23 +274,23 @@ TEST(InverseKinematics, OnlyItKnowsWhatDrivesWithoutAMotionDo) {
 // it at its end, and the root of a third body is welded perpendicularly to the free end of the
 // straight one.
 TEST(ReferencePose, GoesOnAlongWelds) {
-  const double R = 0.8, quarter = 0.5 * kPi * R, angle = 0.3;
+  const double R = 0.8, quarter = 0.5 * std::numbers::pi * R, angle = 0.3;
   const std::vector<UndeformedBody> bodies = {
       {"last", 0, 0, {}},
       {"arc", 0, 1 / R, ReferencePose{{0, 0}, angle, 0, 1 / R}},
       {"straight", 0.2, 0, {}}};
   const std::vector<ReferenceWeld> welds = {
-      {{"straight", {1.2, 0}, 0.5 * kPi}, {"last", {0, 0}, 0}},
-      {{"arc", {quarter, 0}, 0.5 * kPi}, {"straight", {0, 0}, 0}}};
+      {{"straight", {1.2, 0}, 0.5 * std::numbers::pi}, {"last", {0, 0}, 0}},
+      {{"arc", {quarter, 0}, 0.5 * std::numbers::pi}, {"straight", {0, 0}, 0}}};
   const Vec2 corner = rotation(angle) * Vec2(R, R);
   const ReferencePose straight = reference_pose(bodies, welds, "straight"),
                       last = reference_pose(bodies, welds, "last");
   EXPECT_LT((straight.location({0, 0}).head<2>() - corner).norm(), 1e-15);
-  EXPECT_NEAR(straight.angle, angle + 0.5 * kPi, 1e-15);
+  EXPECT_NEAR(straight.angle, angle + 0.5 * std::numbers::pi, 1e-15);
   EXPECT_EQ(straight.line, 0.2);
   const Vec2 up = rotation(straight.angle) * Vec2(1, 0);
   EXPECT_LT((last.origin - (corner + 1.2 * up)).norm(), 1e-15);
-  EXPECT_NEAR(last.angle, angle + kPi, 1e-15);
+  EXPECT_NEAR(last.angle, angle + std::numbers::pi, 1e-15);
 }
 
 TEST(ReferencePose, IsThatOfTheWorldWhereNothingSaysMore) {

@@ -25,8 +25,6 @@ using testing::point_model;
 using testing::Rod;
 using Parts = std::vector<LinearRow::Part>;
 
-constexpr double kPi = std::numbers::pi;
-
 // After a permutation [2 1 0; 0 0 -3; 0 5 4] is triangular with the blocks 2, -3 and 5.
 TEST(BlockDeterminants, AreThoseOfTheBlocks) {
   SparseMatrix a(3, 3);
@@ -63,7 +61,7 @@ VectorXd mirrored(const FourBar& bar, const VectorXd& q) {
 TEST(Branches, APathDoesNotChangeToTheMirroredBranch) {
   // A parallelogram whose crank is 1e-4 m too short: the branches almost meet at 0 and π.
   const FourBar bar{.r = 0.2999, .l = 0.5, .s = 0.3, .g = 0.5};
-  const testing::Course angle = linear(0.8, 2 * kPi);
+  const testing::Course angle = linear(0.8, 2 * std::numbers::pi);
   Workspace model = bar.model(angle);
   Kinematics motion(model, model.reference(), {.largest_step = 10});
   for (const double t : {0.3, 1.0, 4.7}) {
@@ -95,11 +93,11 @@ Workspace parallel_cranks(double angle, double rate) {
 // The platform is at a dead centre of two of its cranks six times in a revolution, where the third
 // crank determines the motion.
 TEST(RedundantRows, APathPassesDeadCentresOfOtherJoints) {
-  Workspace model = parallel_cranks(0.4, 2 * kPi);
+  Workspace model = parallel_cranks(0.4, 2 * std::numbers::pi);
   Kinematics motion(model, model.reference());
   EXPECT_EQ(model.left_out_rows().size(), 1u);
   for (int k = 0; k <= 40; ++k) {
-    const double t = 0.05 * k, angle = 0.4 + 2 * kPi * t;
+    const double t = 0.05 * k, angle = 0.4 + 2 * std::numbers::pi * t;
     const Vec2 crank = 0.3 * Vec2(std::cos(angle), std::sin(angle));
     const VectorXd q = motion.at(t).q;
     EXPECT_LT((q.segment<2>(0) - crank).norm(), 1e-9);

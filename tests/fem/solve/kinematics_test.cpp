@@ -22,8 +22,6 @@ using testing::LinearRow;
 using testing::Rod;
 using Parts = std::vector<LinearRow::Part>;
 
-constexpr double kPi = std::numbers::pi;
-
 /// The message at the end of the possible motion, and its time.
 struct PathEnd {
   std::string text;
@@ -55,8 +53,8 @@ PathEnd end_of_path(Workspace& model, double until) {
 TEST(Kinematics, FourBarFollowsItsClosedForm) {
   const FourBar bar;
   const Course angle = [](double t) {
-    return Motion{0.7 + 2 * kPi * t + 0.3 * std::sin(5 * t), 2 * kPi + 1.5 * std::cos(5 * t),
-                  -7.5 * std::sin(5 * t)};
+    return Motion{0.7 + 2 * std::numbers::pi * t + 0.3 * std::sin(5 * t),
+                  2 * std::numbers::pi + 1.5 * std::cos(5 * t), -7.5 * std::sin(5 * t)};
   };
   Workspace model = bar.model(angle);
   const auto exact = [&](double t) { return bar.locations(angle(t).value); };
@@ -81,7 +79,7 @@ TEST(Kinematics, FourBarFollowsItsClosedForm) {
 // One call over ten revolutions must find its own substeps and stay on its branch.
 TEST(Kinematics, KeepsToItsBranchOverLargeSteps) {
   const FourBar bar;
-  const Course angle = linear(0.7, 2 * kPi);
+  const Course angle = linear(0.7, 2 * std::numbers::pi);
   Workspace model = bar.model(angle);
   Kinematics motion(model, model.reference(), {.largest_step = 10});
   EXPECT_LT((motion.at(10.4).q - bar.locations(angle(10.4).value)).lpNorm<Eigen::Infinity>(),

@@ -21,7 +21,6 @@
 namespace flexmorph::fem {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kModulus = 2.1e11, kWidth = 0.01, kDensity = 7850;
 
 PlaneSection section() { return {kWidth, kModulus, 0.0, kDensity}; }
@@ -45,7 +44,9 @@ NaturalModes modes_at_rest(Workspace& model, const State& x, int count) {
   return natural_modes(model, x, std::vector<Turning>(model.bodies().size()), count);
 }
 
-double angular_frequency(const NaturalMode& mode) { return 2 * kPi * mode.frequency(); }
+double angular_frequency(const NaturalMode& mode) {
+  return 2 * std::numbers::pi * mode.frequency();
+}
 
 // ω = β² √(E I/(ρ A)) with cos β cosh β = 1. Shear and rotary inertia reduce it by about 5e-5 at
 // L/h = 200. Three rigid motions of equal frequency 0 must be found, each once.
@@ -98,7 +99,7 @@ Workspace pendulum(double gravity, double damping = 0) {
   TorsionSpringData spring;
   spring.stiffness = kSpring;
   spring.damping = damping;
-  spring.rest_angle = -kPi / 2;
+  spring.rest_angle = -std::numbers::pi / 2;
   model.add_force_element(make_torsion_spring("spring", {""}, {"bob"}, spring));
   return model;
 }
@@ -106,7 +107,7 @@ Workspace pendulum(double gravity, double damping = 0) {
 /// Returns the state of the hanging pendulum with its multipliers.
 State hanging(Workspace& model) {
   State x = model.reference();
-  testing::put(model, "bob", {.angle = -kPi / 2}, x);
+  testing::put(model, "bob", {.angle = -std::numbers::pi / 2}, x);
   solve_static_equilibrium(model, x);
   return x;
 }
@@ -147,7 +148,7 @@ TEST(NaturalModes, OfAnUprightPendulumGrow) {
   testing::add_rigid(model, "bob", {kMass, {kArm, 0}, kInertia}, Vec2(0, -kGravity));
   model.add_joint(make_revolute("pin", {"", {0, 0}}, {"bob", {0, 0}}));
   State x = model.reference();
-  testing::put(model, "bob", {.angle = kPi / 2}, x);
+  testing::put(model, "bob", {.angle = std::numbers::pi / 2}, x);
   x.a.setZero();
   const NaturalModes found = [&] {
     State still = x;
@@ -170,7 +171,7 @@ TEST(Relaxation, EndsAtTheHangingPendulum) {
     testing::put(model, "bob", {.angle = angle}, x);
     ASSERT_TRUE(relax_to_equilibrium(model, x)) << angle;
     // The spring is relaxed where the pendulum hangs.
-    EXPECT_NEAR(testing::angle_of(model, "bob", x), -kPi / 2, 1e-4) << angle;
+    EXPECT_NEAR(testing::angle_of(model, "bob", x), -std::numbers::pi / 2, 1e-4) << angle;
   }
   Workspace model;
   testing::add_rigid(model, "stone", {kMass, {0, 0}, kInertia}, Vec2(0, -kGravity));
@@ -310,10 +311,10 @@ TEST(NaturalModes, AreFrequenciesOfTheMotionAfterASmallPush) {
   std::vector<std::unique_ptr<Term>> terms = elastic("ecm");
   terms.push_back(make_gravity(section(), LoadLaw(VectorXd(Vec2(0, -kGravity)))));
   model.add_body("arm", std::make_unique<AncfBeam>(1, kHeight, 8), section(), std::move(terms));
-  model.add_joint(
-      make_edge_weld("weld", "arm", "root", {"bob", {kArm, 0}, kPi / 2, {}}, WeldMode::partial));
+  model.add_joint(make_edge_weld("weld", "arm", "root",
+                                 {"bob", {kArm, 0}, std::numbers::pi / 2, {}}, WeldMode::partial));
   State x = model.reference();
-  testing::put(model, "bob", {.angle = -kPi / 2}, x);
+  testing::put(model, "bob", {.angle = -std::numbers::pi / 2}, x);
   {
     VectorXd q = x.q.segment(model.body("arm").first_dof, model.body("arm").n_dofs());
     for (int at = 0; at < q.size(); at += 6) q[at + 1] -= kArm;  // positions; slopes stay

@@ -14,13 +14,12 @@
 
 #include "fem/solve/factorization/supernodal_factor.h"
 #include "tests/support/dense.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
 
 using Vector8 = Eigen::Matrix<double, 8, 1>;
-
-const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 
 /// Returns u = strain . x + translation + rotation at the corners of a dx x dy cell.
 Vector8 linear_field(const Vec3& strain, const Vec3& rigid, double dx, double dy) {
@@ -35,7 +34,7 @@ Vector8 linear_field(const Vec3& strain, const Vec3& rigid, double dx, double dy
 }
 
 TEST(Q4, IsSymmetricAndRigidMotionsCostNothing) {
-  const auto K = q4_stiffness(kSection, 0.3, 0.2);
+  const auto K = q4_stiffness(kThinSection, 0.3, 0.2);
   EXPECT_LT((K - K.transpose()).cwiseAbs().maxCoeff(), 1e-15 * K.cwiseAbs().maxCoeff());
   const Vector8 u = linear_field(Vec3::Zero(), {0.4, -1.1, 0.7}, 0.3, 0.2);
   EXPECT_LT((K * u).cwiseAbs().maxCoeff(), 1e-14 * K.cwiseAbs().maxCoeff());
@@ -45,15 +44,15 @@ TEST(Q4, IsSymmetricAndRigidMotionsCostNothing) {
 
 // The corner forces of a constant stress are half of the traction of each of the two edges.
 TEST(Q4, ConstantStrainGivesTheTractionsOfItsStress) {
-  const double dx = 0.3, dy = 0.2, nu = kSection.poisson_ratio;
+  const double dx = 0.3, dy = 0.2, nu = kThinSection.poisson_ratio;
   const Vec3 strain{1e-3, -2e-3, 3e-3};
-  const double E = kSection.youngs_modulus / (1 - nu * nu);
+  const double E = kThinSection.youngs_modulus / (1 - nu * nu);
   const double s_x = E * (strain(0) + nu * strain(1)), s_y = E * (strain(1) + nu * strain(0));
   const double s_xy = E * (1 - nu) / 2 * strain(2);
-  const Vector8 f = q4_stiffness(kSection, dx, dy) * linear_field(strain, {1, 2, 3}, dx, dy);
+  const Vector8 f = q4_stiffness(kThinSection, dx, dy) * linear_field(strain, {1, 2, 3}, dx, dy);
   for (std::size_t a = 0; a < 4; ++a) {
     const double n_x = 2 * kCornerI[a] - 1, n_y = 2 * kCornerJ[a] - 1;
-    const double h = kSection.thickness / 2;
+    const double h = kThinSection.thickness / 2;
     const auto k = static_cast<Eigen::Index>(2 * a);
     const double scale = E * 1e-3 * h * dx;
     EXPECT_NEAR(f(k), h * (s_x * n_x * dy + s_xy * n_y * dx), 1e-10 * scale);
@@ -63,9 +62,9 @@ TEST(Q4, ConstantStrainGivesTheTractionsOfItsStress) {
 
 TEST(Q4, EnergyAndMassOfManyLoadsEqualTheMatrixProducts) {
   const double dx = 0.3, dy = 0.2;
-  const auto K = q4_stiffness(kSection, dx, dy);
-  const Eigen::Matrix4d M = q4_mass(kSection, dx, dy);
-  EXPECT_NEAR(M.sum(), kSection.density * kSection.thickness * dx * dy, 1e-14);
+  const auto K = q4_stiffness(kThinSection, dx, dy);
+  const Eigen::Matrix4d M = q4_mass(kThinSection, dx, dy);
+  EXPECT_NEAR(M.sum(), kThinSection.density * kThinSection.thickness * dx * dy, 1e-14);
   const int n = 21;
   std::srand(3);
   const MatrixXd x = MatrixXd::Random(n, 8), z = MatrixXd::Random(n, 8);
@@ -79,8 +78,8 @@ TEST(Q4, EnergyAndMassOfManyLoadsEqualTheMatrixProducts) {
     corners.v[c] = &x(0, k + 1);
     b[c] = &z(0, k);
   }
-  Q4Energy(kSection, dx, dy).weighted(corners, w.data(), n, energy.data());
-  Q4MassProduct(kSection, dx, dy).multiply(a, b, n, product.data());
+  Q4Energy(kThinSection, dx, dy).weighted(corners, w.data(), n, energy.data());
+  Q4MassProduct(kThinSection, dx, dy).multiply(a, b, n, product.data());
   for (int l = 0; l < n; ++l) {
     const Vector8 u = x.row(l).transpose();
     EXPECT_NEAR(energy(l), w(l) * u.dot(K * u), 1e-13 * K.cwiseAbs().maxCoeff());
@@ -96,7 +95,7 @@ TEST(Q4, EnergyAndMassOfManyLoadsEqualTheMatrixProducts) {
 /// Returns the stiffness of all nodes behind column `root`, assembled cell by cell, with unknowns
 /// numbered from the root. Only the cell matrix is shared with the solver.
 Eigen::SparseMatrix<double> cut_stiffness(const Grid& g, const VectorXd& factor, int root) {
-  const auto K = q4_stiffness(kSection, g.dx(), g.dy());
+  const auto K = q4_stiffness(kThinSection, g.dx(), g.dy());
   std::vector<Eigen::Triplet<double>> entries;
   const auto dof = [&](int i, int j) {
     return i <= root ? -1 : 2 * ((i - root - 1) * (g.ny + 1) + j);
@@ -156,7 +155,7 @@ std::vector<std::vector<int>> root_column_orders() {
 
 // The loads are clamped at different columns, in falling, rising and mixed order.
 TEST(StaticSolver, EveryRootColumnEqualsRefactoring) {
-  StaticSolver solver(kGrid, kSection, 2);
+  StaticSolver solver(kGrid, kThinSection, 2);
   const VectorXd factor = random_factors(kGrid, 1e-3, 1);
   solver.factorize(factor);
   for (const std::vector<int>& roots : root_column_orders()) {
@@ -184,7 +183,7 @@ TEST(StaticSolver, EveryRootColumnEqualsRefactoring) {
 }
 
 TEST(StaticSolver, MixedLoadsEqualTheirCombination) {
-  StaticSolver solver(kGrid, kSection, 2);
+  StaticSolver solver(kGrid, kThinSection, 2);
   solver.factorize(random_factors(kGrid, 1e-3, 2));
   for (const std::vector<int>& roots : root_column_orders()) {
     std::srand(6);
@@ -200,7 +199,7 @@ TEST(StaticSolver, MixedLoadsEqualTheirCombination) {
 }
 
 TEST(StaticSolver, ForcesAndEnergiesBelongToTheSameMatrix) {
-  StaticSolver solver(kGrid, kSection, 2);
+  StaticSolver solver(kGrid, kThinSection, 2);
   const VectorXd factor = random_factors(kGrid, 1e-3, 3);
   solver.factorize(factor);
   const std::vector<int> roots = {9, 2, 23, 2, 16, 4, 7};
@@ -230,7 +229,7 @@ TEST(StaticSolver, ForcesAndEnergiesBelongToTheSameMatrix) {
 }
 
 TEST(StaticSolver, SquaresOfTheForwardSubstitutionAreCompliances) {
-  StaticSolver solver(kGrid, kSection);
+  StaticSolver solver(kGrid, kThinSection);
   solver.factorize(random_factors(kGrid, 1e-2, 4));
   std::srand(8);
   const MatrixXd F = MatrixXd::Random(3, solver.n_unknowns());
@@ -246,7 +245,7 @@ TEST(StaticSolver, SquaresOfTheForwardSubstitutionAreCompliances) {
 /// end.
 double tip_deflection(int nx, int ny) {
   const Grid g{0, 0, 1.0, 0.1, nx, ny};
-  StaticSolver solver(g, kSection);
+  StaticSolver solver(g, kThinSection);
   solver.factorize(VectorXd::Ones(g.n_cells()));
   MatrixXd u = MatrixXd::Zero(1, solver.n_unknowns());
   VectorXd share = VectorXd::Constant(ny + 1, 1.0 / ny);
@@ -271,7 +270,7 @@ TEST(StaticSolver, CantileverConvergesToTimoshenko) {
 }
 
 TEST(StaticSolver, RefusesWhatItCannotFactor) {
-  StaticSolver solver(kGrid, kSection);
+  StaticSolver solver(kGrid, kThinSection);
   VectorXd factor = VectorXd::Ones(kGrid.n_cells());
   const auto kind_of = [&](const VectorXd& f) {
     try {
@@ -300,7 +299,7 @@ TEST(StaticSolver, RefusesWhatItCannotFactor) {
   EXPECT_THROW(solver.solve(loads, std::vector<int>{25}), Error);
   EXPECT_THROW(solver.solve(loads, std::vector<int>{-1}), Error);
   EXPECT_THROW(solver.solve(loads, std::vector<int>{1, 2}), Error);
-  EXPECT_THROW(StaticSolver(kGrid, kSection, 24), Error);
+  EXPECT_THROW(StaticSolver(kGrid, kThinSection, 24), Error);
 }
 
 // The rows of supernodes are not a range, which does not occur in plates numbered column by column.
@@ -348,7 +347,7 @@ TEST(SupernodalFactor, ScatteredRowsAndLeadingBlocks) {
 // order of clamps.
 TEST(StaticSolver, LoadsAtTheClampSkipWhatIsZero) {
   const Grid g{0, 0, 0.4, 0.1, 16, 4};
-  StaticSolver solver(g, kSection, 1);
+  StaticSolver solver(g, kThinSection, 1);
   std::mt19937 engine(9);
   std::uniform_real_distribution<double> uniform(0.01, 1);
   VectorXd factor(g.n_cells());

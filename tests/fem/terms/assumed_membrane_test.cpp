@@ -6,6 +6,7 @@
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -14,21 +15,19 @@ using testing::AncfPlate;
 using testing::first_difference;
 using testing::ShapeSet;
 
-const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
-
-struct Case {
+struct AssumedTerm {
   int dim;
   ShapeSet shapes;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const AssumedTerm& c, std::ostream* out) {
   *out << c.dim << (c.shapes == ShapeSet::h12 ? "d_h12" : "d_h16");
 }
 
-class AssumedMembrane : public ::testing::TestWithParam<Case> {
+class AssumedMembrane : public ::testing::TestWithParam<AssumedTerm> {
  protected:
   AncfPlate plate_{GetParam().dim, GetParam().shapes, testing::uniform_lines(0.1, 0.3, 1),
                    testing::uniform_lines(-0.05, 0.02, 1)};
-  std::unique_ptr<Term> term_ = make_assumed_membrane(kSection);
+  std::unique_ptr<Term> term_ = make_assumed_membrane(kThinSection);
   LocalRows q_ = testing::rows_of_element(plate_, testing::random_shape(plate_, 0.2, 5), 0);
 
   void SetUp() override { term_->prepare(plate_, {}, true); }
@@ -43,8 +42,10 @@ class AssumedMembrane : public ::testing::TestWithParam<Case> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, AssumedMembrane,
-                         ::testing::Values(Case{2, ShapeSet::h12}, Case{2, ShapeSet::h16},
-                                           Case{3, ShapeSet::h12}, Case{3, ShapeSet::h16}));
+                         ::testing::Values(AssumedTerm{2, ShapeSet::h12},
+                                           AssumedTerm{2, ShapeSet::h16},
+                                           AssumedTerm{3, ShapeSet::h12},
+                                           AssumedTerm{3, ShapeSet::h16}));
 
 TEST_P(AssumedMembrane, EnergyIsThatOfSampledStrains) {
   const auto parabola = [](int i, double s) {
@@ -63,8 +64,8 @@ TEST_P(AssumedMembrane, EnergyIsThatOfSampledStrains) {
         for (int j = 0; j < 3; ++j)
           assumed[2] += parabola(i, s) * parabola(j, u) * strain(samples[i], samples[j])[2];
       }
-      energy += 0.5 * rule.weights[g] * rule.weights[h] * 0.2 * 0.07 * kSection.thickness *
-                assumed.dot(kSection.elasticity() * assumed);
+      energy += 0.5 * rule.weights[g] * rule.weights[h] * 0.2 * 0.07 * kThinSection.thickness *
+                assumed.dot(kThinSection.elasticity() * assumed);
     }
   EXPECT_NEAR(term_->strain_energy(0, at(q_)), energy, 1e-12 * energy);
 }

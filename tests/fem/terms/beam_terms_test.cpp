@@ -17,6 +17,7 @@
 #include "tests/support/differences.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -24,8 +25,7 @@ namespace {
 using testing::first_difference;
 using testing::rows_of_element;
 
-const PlaneSection kSection{0.05, 2e8, 0.3, 7200};
-constexpr double kHeight = 0.1;
+constexpr double kDepth = 0.1;
 
 struct Case {
   const char *model, *reference;
@@ -34,10 +34,10 @@ struct Case {
 };
 
 AncfBeam beam_of(const std::string& reference) {
-  if (reference == "straight") return {{0, 0.2, 0.45, 0.6}, kHeight};
+  if (reference == "straight") return {{0, 0.2, 0.45, 0.6}, kDepth};
   if (reference == "arc")  // 90 degrees, 9 elements: one full batch and one element more
-    return {uniform_nodes(0.9, 9), kHeight, arc_reference(0.9, std::numbers::pi / 2, 9)};
-  return testing::crooked_beam(kHeight);
+    return {uniform_nodes(0.9, 9), kDepth, arc_reference(0.9, std::numbers::pi / 2, 9)};
+  return testing::crooked_beam(kDepth);
 }
 
 class BeamTerm : public ::testing::TestWithParam<Case> {
@@ -79,7 +79,7 @@ class BeamTerm : public ::testing::TestWithParam<Case> {
   }
 
   AncfBeam beam = beam_of(GetParam().reference);
-  BodyTerm term = make_term(GetParam().model, kSection);
+  BodyTerm term = make_term(GetParam().model, kBeamSection);
 };
 INSTANTIATE_TEST_SUITE_P(Beams, BeamTerm, ::testing::ValuesIn([] {
                            std::vector<Case> out;
@@ -159,8 +159,8 @@ struct PlainStrains {
 
 /// Returns the strain energy of one element by 16 Gauss points each way.
 double energy_by_points(const Case& which, const LocalRows& X, const LocalRows& q, double l) {
-  const double E = kSection.youngs_modulus, nu = kSection.poisson_ratio, G = E / (2 * (1 + nu)),
-               c = E / (1 - nu * nu);
+  const double E = kBeamSection.youngs_modulus, nu = kBeamSection.poisson_ratio,
+               G = E / (2 * (1 + nu)), c = E / (1 - nu * nu);
   const PlainStrains plain{X, q, l};
   const GaussRule& rule = gauss(16);
   double sum = 0;
@@ -168,7 +168,7 @@ double energy_by_points(const Case& which, const LocalRows& X, const LocalRows& 
     const double s = rule.points[g];
     const Matrix2 of_axis = plain.strain(s, 0), axis = which.assumed() ? plain.assumed(s) : of_axis;
     for (size_t h = 0; h < 16; ++h) {
-      const double y = (rule.points[h] - 0.5) * kHeight;
+      const double y = (rule.points[h] - 0.5) * kDepth;
       const Matrix2 e = plain.strain(s, y) - of_axis + axis;
       const double twice =
           which.ecm() ? E * e(0, 0) * e(0, 0) + E * e(1, 1) * e(1, 1) + 4 * G * e(0, 1) * e(0, 1)
@@ -181,7 +181,7 @@ double energy_by_points(const Case& which, const LocalRows& X, const LocalRows& 
         rule.weights[g] * plain.area_ratio(s, 0) * nu * c / 2 *
         (nu * axis(0, 0) * axis(0, 0) + nu * axis(1, 1) * axis(1, 1) + 2 * axis(0, 0) * axis(1, 1));
   }
-  return sum * l * kHeight * kSection.thickness;
+  return sum * l * kDepth * kBeamSection.thickness;
 }
 
 // For the straight beam both rules are exact; otherwise 7 x 4 points integrate a rational function.
@@ -204,7 +204,7 @@ TEST_P(BeamTerm, RigidMotionStrainsNothing) {
   turn << std::cos(2.7), -std::sin(2.7), std::sin(2.7), std::cos(2.7);
   MatrixXd q = beam.reference() * turn.transpose();
   for (int k = 0; k < beam.n_vectors(); k += 3) q.row(k) += Eigen::RowVector2d(8, -6);
-  const double stiffness = kSection.youngs_modulus * kSection.thickness * kHeight;  // E A
+  const double stiffness = kBeamSection.youngs_modulus * kBeamSection.thickness * kDepth;  // E A
   EXPECT_LT(std::abs(energy(q)), 1e-20 * stiffness);
   for (int e = 0; e < beam.n_elements(); ++e) {
     const LocalRows f = force(e, local(e, q));
@@ -232,10 +232,10 @@ TEST_P(BeamTerm, UniformStrainHasTheExactEnergyAndStress) {
     const Eigen::Matrix2d e = (F.transpose() * F - Eigen::Matrix2d::Identity()) / 2;
     const Vec3 strain(e(0, 0), e(1, 1), 2 * e(0, 1));
     const double exact =
-        0.5 * strain.dot(kSection.elasticity() * strain) * area() * kSection.thickness;
+        0.5 * strain.dot(kBeamSection.elasticity() * strain) * area() * kBeamSection.thickness;
     EXPECT_NEAR(energy(beam.reference() * F.transpose()), exact, 1e-12 * exact);
     // The virtual work of the force in δF is P : δF times the volume, P = F S.
-    const Vec3 s = kSection.elasticity() * strain;
+    const Vec3 s = kBeamSection.elasticity() * strain;
     Eigen::Matrix2d S;
     S << s[0], s[2], s[2], s[1];
     Eigen::Matrix2d dF;
@@ -244,8 +244,8 @@ TEST_P(BeamTerm, UniformStrainHasTheExactEnergyAndStress) {
     double work = 0;
     for (int e1 = 0; e1 < beam.n_elements(); ++e1)
       work += force(e1, local(e1, q)).cwiseProduct(rows_of_element(beam, dq, e1)).sum();
-    const double expected = (F * S).cwiseProduct(dF).sum() * area() * kSection.thickness;
-    EXPECT_NEAR(work, expected, 1e-12 * s.norm() * area() * kSection.thickness);
+    const double expected = (F * S).cwiseProduct(dF).sum() * area() * kBeamSection.thickness;
+    EXPECT_NEAR(work, expected, 1e-12 * s.norm() * area() * kBeamSection.thickness);
   }
 }
 
@@ -367,17 +367,17 @@ TEST_P(BeamTerm, MeanForceIsADiscreteGradient) {
 // κ: ε₁₁ = -κy. The energy per length is E/(1 - ν²) I κ²/2 for gcm, because r_y cannot contract and
 // expand over the height, and E I κ²/2 for ecm.
 TEST(BeamBending, PoissonLockingIsOneOverOneMinusNuSquared) {
-  const double l = 0.5, kappa = 1e-4, inertia = kSection.thickness * std::pow(kHeight, 3) / 12;
-  const AncfBeam beam(l, kHeight, 1);
+  const double l = 0.5, kappa = 1e-4, inertia = kBeamSection.thickness * std::pow(kDepth, 3) / 12;
+  const AncfBeam beam(l, kDepth, 1);
   Local x;
   x.q.resize(6, 2);
   x.q << 0, 0, 1, 0, 0, 1, l, kappa * l * l / 2, 1, kappa * l, -kappa * l, 1;
-  const double exact = kSection.youngs_modulus * inertia * kappa * kappa / 2 * l;
+  const double exact = kBeamSection.youngs_modulus * inertia * kappa * kappa / 2 * l;
   for (const auto& [name, factor] : {std::pair{"ecm", 1.0},
                                      {"gcm", 1 / (1 - 0.3 * 0.3)},
                                      {"ecm_full", 1.0},
                                      {"gcm_full", 1 / (1 - 0.3 * 0.3)}}) {
-    const BodyTerm term = make_term(name, kSection);
+    const BodyTerm term = make_term(name, kBeamSection);
     term->prepare(beam, {}, true);
     // Terms of fourth order in κ are negligible: (κl)²/h² of the strain on the axis is below 1e-4
     // of it.
@@ -389,7 +389,7 @@ TEST(BeamTerms, BelongToBeamsInThePlane) {
   const AncfPlate plate(2, testing::ShapeSet::h12, testing::uniform_lines(0, 1, 2),
                         testing::uniform_lines(0, 1, 1));
   const std::string text = testing::error_of(
-      Error::Kind::input, [&] { make_beam_ecm(kSection)->prepare(plate, {}, true); });
+      Error::Kind::input, [&] { make_beam_ecm(kBeamSection)->prepare(plate, {}, true); });
   EXPECT_TRUE(testing::mentions(text, "'ecm'")) << text;
 }
 

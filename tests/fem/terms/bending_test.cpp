@@ -8,6 +8,7 @@
 #include "fem/model/body_term.h"
 #include "fem/terms.h"
 #include "tests/support/differences.h"
+#include "tests/support/sections.h"
 #include "tests/support/space_plates.h"
 
 namespace flexmorph::fem {
@@ -16,20 +17,18 @@ namespace {
 using testing::first_difference;
 using testing::ShapeSet;
 
-const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
-
-struct Case {
+struct BendingTerm {
   std::string term;
   ShapeSet shapes;
   bool designed;
 };
 
-class SpaceTerm : public ::testing::TestWithParam<Case> {
+class SpaceTerm : public ::testing::TestWithParam<BendingTerm> {
  protected:
   SpaceTerm()
       : plate(3, GetParam().shapes, {{0.1, {}}, {0.21, {}}, {0.3, {}}, {0.45, {}}},
               {{-0.05, {}}, {0.01, {}}, {0.07, {}}}),
-        term(make_term(GetParam().term, kSection)) {
+        term(make_term(GetParam().term, kThinSection)) {
     if (GetParam().designed) factors = testing::random_factors(5);
     term->prepare(plate, factors, true);
   }
@@ -48,17 +47,20 @@ class SpaceTerm : public ::testing::TestWithParam<Case> {
   ScaleFactors factors;
   BodyTerm term;
 };
-INSTANTIATE_TEST_SUITE_P(
-    Shapes, SpaceTerm,
-    ::testing::Values(Case{"bending", ShapeSet::h12, false}, Case{"bending", ShapeSet::h16, false},
-                      Case{"bending", ShapeSet::h12, true}, Case{"bending", ShapeSet::h16, true},
-                      Case{"membrane", ShapeSet::h12, false}, Case{"membrane", ShapeSet::h16, true},
-                      Case{"membrane_assumed", ShapeSet::h12, false},
-                      Case{"membrane_assumed", ShapeSet::h16, true}),
-    [](const auto& c) {
-      return c.param.term + (c.param.shapes == ShapeSet::h12 ? "_h12" : "_h16") +
-             (c.param.designed ? "_designed" : "_uniform");
-    });
+INSTANTIATE_TEST_SUITE_P(Shapes, SpaceTerm,
+                         ::testing::Values(BendingTerm{"bending", ShapeSet::h12, false},
+                                           BendingTerm{"bending", ShapeSet::h16, false},
+                                           BendingTerm{"bending", ShapeSet::h12, true},
+                                           BendingTerm{"bending", ShapeSet::h16, true},
+                                           BendingTerm{"membrane", ShapeSet::h12, false},
+                                           BendingTerm{"membrane", ShapeSet::h16, true},
+                                           BendingTerm{"membrane_assumed", ShapeSet::h12, false},
+                                           BendingTerm{"membrane_assumed", ShapeSet::h16, true}),
+                         [](const auto& c) {
+                           return c.param.term +
+                                  (c.param.shapes == ShapeSet::h12 ? "_h12" : "_h16") +
+                                  (c.param.designed ? "_designed" : "_uniform");
+                         });
 
 // With steps of 1e-3 of the element, truncation is 1e-12 times the growth of fifth derivatives, and
 // round-off is 1e-16 / 1e-3.
@@ -100,8 +102,8 @@ TEST_P(SpaceTerm, RigidMotionStoresNoEnergyAndNeedsNoForce) {
   MatrixXd q = plate.reference() * turn.transpose();
   for (int k = 0; k < plate.n_vectors(); ++k)
     if (plate.is_position(k)) q.row(k) += Eigen::RowVector3d(8, -6, 1);
-  const double c = kSection.thickness, area = 0.1 * 0.06,
-               unit = kSection.youngs_modulus * area *
+  const double c = kThinSection.thickness, area = 0.1 * 0.06,
+               unit = kThinSection.youngs_modulus * area *
                       (GetParam().term != "bending" ? c : c * c * c / 12 / 0.06 / 0.06);
   for (int e = 0; e < plate.n_elements(); ++e) {
     Local x;
@@ -137,7 +139,7 @@ double energy_of_surface(const std::function<Vec3(double, double)>& r, int eleme
     q.row(node.r_n) = by_n(m);
     q.row(node.r_mn) = first_difference([&](double d) { return by_n(m + d); }, h);
   }
-  const BodyTerm term = make_bending(kSection, n_points);
+  const BodyTerm term = make_bending(kThinSection, n_points);
   term->prepare(plate, {}, true);
   double out = 0;
   for (int e = 0; e < plate.n_elements(); ++e) {
@@ -153,7 +155,8 @@ double energy_of_surface(const std::function<Vec3(double, double)>& r, int eleme
 // the curvature and of its square in the energy: (0.125/0.6)⁴/144 = 1e-5, a few times more with
 // cross derivatives.
 TEST(Bending, CylinderHasTheEnergyOfItsCurvature) {
-  const double d = kSection.elasticity()(0, 0) * std::pow(kSection.thickness, 3) / 12, radius = 0.6;
+  const double d = kThinSection.elasticity()(0, 0) * std::pow(kThinSection.thickness, 3) / 12,
+               radius = 0.6;
   for (const double a : {0.0, 0.5, std::numbers::pi / 2}) {
     const Vec3 along(std::cos(a), std::sin(a), 0), across(-std::sin(a), std::cos(a), 0);
     const auto cylinder = [&](double m, double n) {
@@ -168,7 +171,8 @@ TEST(Bending, CylinderHasTheEnergyOfItsCurvature) {
 // z = t m n with a small t has κ = (0, 0, 2 t) and the energy ½ D (1-ν)/2 (2t)²; corrections are
 // t².
 TEST(Bending, SaddleHasTheEnergyOfItsTwist) {
-  const double d = kSection.elasticity()(2, 2) * std::pow(kSection.thickness, 3) / 12, t = 1e-4;
+  const double d = kThinSection.elasticity()(2, 2) * std::pow(kThinSection.thickness, 3) / 12,
+               t = 1e-4;
   const double energy =
       energy_of_surface([&](double m, double n) { return Vec3(m, n, t * m * n); }, 2, 5);
   EXPECT_NEAR(energy / (0.5 * d * 4 * t * t), 1, 1e-7);
@@ -187,13 +191,13 @@ TEST(Bending, SevenPointsConfirmFive) {
 // from the tables of all shape functions, with equal points and weights and κ by its definition.
 // The tolerance is round-off of sums of 81 and 256 points.
 TEST(Bending, EnergyIsThatOfItsPoints) {
-  const Eigen::Matrix3d d = std::pow(kSection.thickness, 3) / 12 * kSection.elasticity();
+  const Eigen::Matrix3d d = std::pow(kThinSection.thickness, 3) / 12 * kThinSection.elasticity();
   for (const ShapeSet shapes : {ShapeSet::h12, ShapeSet::h16})
     for (const bool designed : {false, true}) {
       const AncfPlate plate(3, shapes, {{0.1, {}}, {0.21, {}}, {0.3, {}}},
                             {{-0.05, {}}, {0.01, {}}, {0.07, {}}});
       const ScaleFactors factors = designed ? testing::random_factors(5) : ScaleFactors{};
-      const BodyTerm term = make_bending(kSection);
+      const BodyTerm term = make_bending(kThinSection);
       term->prepare(plate, factors, true);
       const MatrixXd shape = testing::random_shape(plate, 0.2, 1);
       for (int e = 0; e < plate.n_elements(); ++e) {
@@ -226,7 +230,7 @@ TEST(Bending, BatchesAreTheirElements) {
         std::vector<MaterialLine> lines = testing::uniform_lines(0.1, 0.45, 5);
         if (moves) lines[0] = testing::swinging_line(0.1, 0.03, 2.1);
         AncfPlate plate(3, shapes, lines, testing::uniform_lines(-0.05, 0.07, 3));
-        const BodyTerm term = make_bending(kSection);
+        const BodyTerm term = make_bending(kThinSection);
         const ScaleFactors factors = designed ? testing::random_factors(3) : ScaleFactors{};
         term->prepare(plate, factors, true);
         plate.move_to(0.37);
@@ -270,11 +274,11 @@ TEST(Bending, BatchesAreTheirElements) {
 TEST(Bending, NeedsSpace) {
   Workspace model;
   std::vector<std::unique_ptr<Term>> terms;
-  terms.push_back(make_term("bending", kSection));
+  terms.push_back(make_term("bending", kThinSection));
   model.add_body("arm",
                  std::make_unique<AncfPlate>(2, ShapeSet::h16, testing::uniform_lines(0, 1, 1),
                                              testing::uniform_lines(0, 1, 1)),
-                 kSection, std::move(terms));
+                 kThinSection, std::move(terms));
   try {
     model.prepare(0);
     FAIL();

@@ -18,6 +18,7 @@
 #include "tests/support/energy_rate.h"
 #include "tests/support/errors.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -26,15 +27,14 @@ using testing::first_difference;
 using testing::second_difference;
 using testing::ShapeSet;
 
-const PlaneSection kSection{0.03, 1e8, 0.3, 2700};
 constexpr double kTime = 2e-3;  // damping time τ [s]
 
-struct Case {
+struct DampedTerm {
   std::vector<std::string> elastic;
   TermDomain domain;
   bool designed = false;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const DampedTerm& c, std::ostream* out) {
   for (const std::string& name : c.elastic) *out << name << ' ';
   *out << (c.domain == TermDomain::plane   ? "plane"
            : c.domain == TermDomain::space ? "space"
@@ -42,7 +42,7 @@ void PrintTo(const Case& c, std::ostream* out) {
        << (c.designed ? " designed" : "");
 }
 
-class Damping : public ::testing::TestWithParam<Case> {
+class Damping : public ::testing::TestWithParam<DampedTerm> {
  protected:
   Damping() {
     const TermDomain domain = GetParam().domain;
@@ -57,7 +57,8 @@ class Damping : public ::testing::TestWithParam<Case> {
     if (GetParam().designed) factors = testing::random_factors(11);
     std::vector<std::string> names = GetParam().elastic;
     names.emplace_back("damping");
-    for (auto& term : make_terms(names, kSection, {{"damping_time", kTime}, {"bending_points", 6}}))
+    for (auto& term :
+         make_terms(names, kThickSection, {{"damping_time", kTime}, {"bending_points", 6}}))
       all.emplace_back(std::move(term));
     for (const auto& term : all) term->prepare(*element, factors, true);
   }
@@ -111,15 +112,15 @@ class Damping : public ::testing::TestWithParam<Case> {
   ScaleFactors factors;
   std::vector<BodyTerm> all;
 };
-INSTANTIATE_TEST_SUITE_P(Bodies, Damping,
-                         ::testing::Values(Case{{"membrane"}, TermDomain::plane},
-                                           Case{{"membrane"}, TermDomain::plane, true},
-                                           Case{{"membrane", "bending"}, TermDomain::space},
-                                           Case{{"membrane", "bending"}, TermDomain::space, true},
-                                           Case{{"membrane_assumed", "bending"}, TermDomain::space},
-                                           Case{{"gcm"}, TermDomain::beam},
-                                           Case{{"ecm"}, TermDomain::beam},
-                                           Case{{"ecm_full"}, TermDomain::beam}));
+INSTANTIATE_TEST_SUITE_P(
+    Bodies, Damping,
+    ::testing::Values(DampedTerm{{"membrane"}, TermDomain::plane},
+                      DampedTerm{{"membrane"}, TermDomain::plane, true},
+                      DampedTerm{{"membrane", "bending"}, TermDomain::space},
+                      DampedTerm{{"membrane", "bending"}, TermDomain::space, true},
+                      DampedTerm{{"membrane_assumed", "bending"}, TermDomain::space},
+                      DampedTerm{{"gcm"}, TermDomain::beam}, DampedTerm{{"ecm"}, TermDomain::beam},
+                      DampedTerm{{"ecm_full"}, TermDomain::beam}));
 
 // In the unstrained state, U(q + h v) = ½ h² ∫ ė·D ė dA + O(h³): its second derivative is P/τ, also
 // with scale factors.
@@ -158,7 +159,7 @@ TEST_P(Damping, ForceIsHalfTheDerivativeOfThePower) {
 TEST(DampingOfAMembrane, PowerIsThatOfStrainRatesAtPoints) {
   const AncfPlate plate = testing::swinging_plate(ShapeSet::h16);
   const ScaleFactors factors = testing::random_factors(11);
-  const auto terms = make_terms(std::vector<std::string>{"membrane", "damping"}, kSection,
+  const auto terms = make_terms(std::vector<std::string>{"membrane", "damping"}, kThickSection,
                                 {{"damping_time", kTime}});
   // The lines of this plate move; the test uses their positions at one time.
   const auto still = plate.copy();
@@ -182,7 +183,7 @@ TEST(DampingOfAMembrane, PowerIsThatOfStrainRatesAtPoints) {
             return Vec3(0.5 * r_m.squaredNorm(), 0.5 * r_n.squaredNorm(), r_m.dot(r_n));
           };
           const Vec3 rate = 0.5 * (strain(1) - strain(-1));
-          return kTime * kSection.thickness * rate.dot(kSection.elasticity() * rate);
+          return kTime * kThickSection.thickness * rate.dot(kThickSection.elasticity() * rate);
         });
     EXPECT_NEAR(damping.dissipation(e, x), expected, 1e-11 * expected);
   }
@@ -287,8 +288,8 @@ TEST(DampingWithFlow, ChangesTheEnergyByThePowers) {
                                         testing::swinging_line(0.21, 0.02, 1.7),
                                         {0.3, {}}},
               testing::uniform_lines(-0.05, 0.07, 2)),
-          kSection,
-          make_terms(names, kSection, {{"damping_time", 0.3}, {"bending_points", points}}));
+          kThickSection,
+          make_terms(names, kThickSection, {{"damping_time", 0.3}, {"bending_points", points}}));
       if (designed) model.set_factors(body, testing::random_factors(5));
       const testing::SmoothMotion motion = testing::any_motion(model);
       for (const double time : {0.3, 0.9}) {
@@ -334,14 +335,15 @@ TEST(DampingTerm, SaysWhatItCannotDo) {
   using Names = std::vector<std::string>;
   const auto error = [](const auto& f) { return testing::error_of(Error::Kind::input, f); };
   const std::string alone = error([] {
-    make_terms(Names{"inertia", "damping"}, kSection, {{"damping_time", 1}});
+    make_terms(Names{"inertia", "damping"}, kThickSection, {{"damping_time", 1}});
   });
   EXPECT_TRUE(testing::mentions(alone, "damping") && testing::mentions(alone, "elastic")) << alone;
   EXPECT_TRUE(testing::mentions(error([] {
-                                  make_terms(Names{"membrane", "damping"}, kSection, {});
+                                  make_terms(Names{"membrane", "damping"}, kThickSection, {});
                                 }),
                                 "damping_time"));
-  const auto terms = make_terms(Names{"membrane", "damping"}, kSection, {{"damping_time", kTime}});
+  const auto terms =
+      make_terms(Names{"membrane", "damping"}, kThickSection, {{"damping_time", kTime}});
   const AncfPlate free(2, ShapeSet::h16, {{0.1, {}, true}, {0.2, {}}}, {{0, {}}, {0.1, {}}});
   const std::string lines = error([&] { terms[1]->prepare(free, {}, true); });
   EXPECT_TRUE(testing::mentions(lines, "'damping'") && testing::mentions(lines, "material lines"))

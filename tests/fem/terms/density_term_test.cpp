@@ -18,14 +18,13 @@
 #include "tests/support/crooked_beam.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
 
 using testing::first_difference;
 using testing::ShapeSet;
-
-const PlaneSection kSection{0.03, 1e8, 0.3, 2700};
 
 struct Case {
   std::string row;
@@ -89,7 +88,7 @@ MatrixXd shape(const Element& element, double size, unsigned seed) {
 /// Returns the densities of a row from their strains and their stiffness only, without closed
 /// forms.
 std::vector<ElasticPart> plain_parts(const TermRow& row) {
-  std::vector<ElasticPart> out = row.elastic({kSection, {}, {}});
+  std::vector<ElasticPart> out = row.elastic({kThickSection, {}, {}});
   for (ElasticPart& part : out) {
     const auto& linear = dynamic_cast<const LinearDensity&>(*part.density);
     part.density = std::make_shared<LinearDensity>(linear.strain(), linear.stiffness());
@@ -110,7 +109,7 @@ class EveryElasticRow : public ::testing::TestWithParam<Case> {
     const TermRow& row = term_row(GetParam().row);
     element = element_of(GetParam(), still);
     if (GetParam().designed) factors = testing::random_factors(11);
-    closed = make_term(row.name, kSection);
+    closed = make_term(row.name, kThickSection);
     generic = make_elastic_term(row.name, plain_parts(row));
     for (const BodyTerm* term : {&closed, &generic}) (*term)->prepare(*element, factors, true);
     q = shape(*element, 0.1, 3);
@@ -203,7 +202,7 @@ TEST_P(EveryElasticRow, HasTheForcesOnFreeLinesOfItsDensity) {
     return out;
   };
   AncfPlate plate(dim, GetParam().shapes, free({0.1, 0.21}), free({-0.02, 0.05}));
-  const BodyTerm closed = make_term(GetParam().row, kSection);
+  const BodyTerm closed = make_term(GetParam().row, kThickSection);
   const BodyTerm generic(make_elastic_term(GetParam().row, plain_parts(term_row(GetParam().row))));
   Local x;
   x.q = testing::rows_of_element(plate, shape(plate, 0.1, 3), 0);

@@ -11,6 +11,7 @@
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -22,7 +23,6 @@ using testing::SmoothMotion;
 using testing::swinging_plate;
 using testing::VectorRows;
 
-const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 constexpr double kTime = 0.41;
 // With this step, truncation (step x 3 rad/s)^4 and round-off 1e-16 / step^2 are near 1e-10 of the
 // accelerations.
@@ -78,7 +78,7 @@ class Flow : public ::testing::TestWithParam<ShapeSet> {
     return first_difference([&](double dt) { return position(e, x, kTime + dt, kTime); }, kStep);
   }
   double mass_integral(int e, const std::function<double(const ShapeTable&)>& f) const {
-    return kSection.density * kSection.thickness *
+    return kThinSection.density * kThinSection.thickness *
            testing::integrate(plate, e, factors, ScaleFactorKind::mass, Tabulate::position, f);
   }
   LocalRows force(const Term& term, int e, const Local& x) const {
@@ -92,7 +92,7 @@ class Flow : public ::testing::TestWithParam<ShapeSet> {
   ScaleFactors factors = testing::random_factors(11);
   SmoothMotion motion{flat(plate.reference()), scales(plate), 4};
   ShapeTable near;
-  BodyTerm inertia = make_inertia(kSection);
+  BodyTerm inertia = make_inertia(kThinSection);
 };
 INSTANTIATE_TEST_SUITE_P(Shapes, Flow, ::testing::Values(ShapeSet::h12, ShapeSet::h16),
                          [](const auto& s) { return s.param == ShapeSet::h12 ? "h12" : "h16"; });
@@ -163,7 +163,7 @@ void Flow::check_tangent(const Term& term, int e) {
 
 TEST_P(Flow, TangentsAreDerivativesByTheWeightedUnknown) {
   const BodyTerm mass = make_point_mass(0.5, {0.17, -0.02}, Vec2(0, -9.81));
-  const BodyTerm weight = make_gravity(kSection, Vec2(1, -9.81));
+  const BodyTerm weight = make_gravity(kThinSection, Vec2(1, -9.81));
   for (Term* term : {&*inertia, &*mass, &*weight}) {
     term->prepare(plate, factors, true);
     check_tangent(*term, 0);
@@ -189,7 +189,7 @@ TEST_P(Flow, PointMassIsThatOfItsMaterialPoint) {
 
 TEST_P(Flow, WeightHasTheForceAndPowerOfItsMass) {
   const Vec2 g(1, -9.81);
-  const BodyTerm term = make_gravity(kSection, g);
+  const BodyTerm term = make_gravity(kThinSection, g);
   term->prepare(plate, factors, true);
   for (const int e : {0, 3}) {
     const Local x = local(e);
@@ -210,7 +210,7 @@ TEST_P(Flow, WeightHasTheForceAndPowerOfItsMass) {
 // outside.
 TEST_P(Flow, TotalMassAndMomentumAreThoseOfThePlate) {
   inertia->prepare(plate, {}, true);
-  const double mass = kSection.density * kSection.thickness *
+  const double mass = kThinSection.density * kThinSection.thickness *
                       (plate.line_m(3).value - plate.line_m(0).value) *
                       (plate.line_n(2).value - plate.line_n(0).value);
   // All unknowns follow the flow so that the material is undeformed: r = X + c t.

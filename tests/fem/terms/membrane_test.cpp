@@ -10,6 +10,7 @@
 #include "fem/terms.h"
 #include "tests/support/differences.h"
 #include "tests/support/models.h"
+#include "tests/support/sections.h"
 
 namespace flexmorph::fem {
 namespace {
@@ -17,8 +18,6 @@ namespace {
 using testing::first_difference;
 using testing::ShapeSet;
 using testing::swinging_plate;
-
-const PlaneSection kSection{0.01, 1e8, 0.3, 2700};
 
 struct Point {
   Eigen::RowVector2d r_m, r_n;
@@ -30,8 +29,8 @@ Point point(const ShapeTable& t, const LocalRows& q) {
   p.r_m = t.N_m * q;
   p.r_n = t.N_n * q;
   p.strain << 0.5 * (p.r_m.squaredNorm() - 1), 0.5 * (p.r_n.squaredNorm() - 1), p.r_m.dot(p.r_n);
-  const double nu = kSection.poisson_ratio;
-  const double c = kSection.thickness * kSection.youngs_modulus / (1 - nu * nu);
+  const double nu = kThinSection.poisson_ratio;
+  const double c = kThinSection.thickness * kThinSection.youngs_modulus / (1 - nu * nu);
   p.stress << c * (p.strain[0] + nu * p.strain[1]), c * (p.strain[1] + nu * p.strain[0]),
       c * (1 - nu) / 2 * p.strain[2];
   return p;
@@ -70,7 +69,7 @@ struct ByPoints {
     return out;
   }
   double tangent(Eigen::Index k, Eigen::Index b, Eigen::Index l, Eigen::Index c) const {
-    const Eigen::Matrix3d elasticity = kSection.thickness * kSection.elasticity();
+    const Eigen::Matrix3d elasticity = kThinSection.thickness * kThinSection.elasticity();
     return sum([&](const ShapeTable& t) {
       const Point p = point(t, q);
       const double mm = t.N_m(0, k) * t.N_m(0, l), nn = t.N_n(0, k) * t.N_n(0, l),
@@ -81,12 +80,12 @@ struct ByPoints {
   }
 };
 
-struct Case {
+struct MembraneTerm {
   ShapeSet shapes;
   bool designed;
 };
 
-class Membrane : public ::testing::TestWithParam<Case> {
+class Membrane : public ::testing::TestWithParam<MembraneTerm> {
  protected:
   Membrane() {
     if (GetParam().designed) factors = testing::random_factors(5);
@@ -110,23 +109,24 @@ class Membrane : public ::testing::TestWithParam<Case> {
     return k;
   }
   double unit_energy() const {  // approximate energy of unit strain everywhere
-    return kSection.youngs_modulus * kSection.thickness * 0.1 * 0.06;
+    return kThinSection.youngs_modulus * kThinSection.thickness * 0.1 * 0.06;
   }
 
   AncfPlate plate = swinging_plate(GetParam().shapes);
   ScaleFactors factors;
-  BodyTerm term = make_membrane(kSection);
+  BodyTerm term = make_membrane(kThinSection);
 };
-INSTANTIATE_TEST_SUITE_P(Shapes, Membrane,
-                         ::testing::Values(Case{ShapeSet::h12, false}, Case{ShapeSet::h16, false},
-                                           Case{ShapeSet::h12, true}, Case{ShapeSet::h16, true},
-                                           Case{ShapeSet::q4, false}, Case{ShapeSet::q4, true}),
-                         [](const auto& c) {
-                           return std::string(c.param.shapes == ShapeSet::h12   ? "h12"
-                                              : c.param.shapes == ShapeSet::h16 ? "h16"
-                                                                                : "q4") +
-                                  (c.param.designed ? "_designed" : "_uniform");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, Membrane,
+    ::testing::Values(MembraneTerm{ShapeSet::h12, false}, MembraneTerm{ShapeSet::h16, false},
+                      MembraneTerm{ShapeSet::h12, true}, MembraneTerm{ShapeSet::h16, true},
+                      MembraneTerm{ShapeSet::q4, false}, MembraneTerm{ShapeSet::q4, true}),
+    [](const auto& c) {
+      return std::string(c.param.shapes == ShapeSet::h12   ? "h12"
+                         : c.param.shapes == ShapeSet::h16 ? "h16"
+                                                           : "q4") +
+             (c.param.designed ? "_designed" : "_uniform");
+    });
 
 // Both are exact for the polynomial of degree 12, so that they differ only by round-off of about
 // 10^4 products.
@@ -254,9 +254,9 @@ TEST_P(Membrane, FlowPowerClosesTheEnergyBalance) {
 }
 
 TEST(MembraneTerm, TableNamesWhatItKnows) {
-  EXPECT_NO_THROW(make_term("membrane", kSection));
+  EXPECT_NO_THROW(make_term("membrane", kThinSection));
   try {
-    make_term("torsion", kSection);
+    make_term("torsion", kThinSection);
     FAIL();
   } catch (const Error& error) {
     for (const TermRow* row : term_rows())
