@@ -1,9 +1,11 @@
 #!/bin/sh
-# tests/bare_root.sh [bookworm | trixie] [--first-steps]
+# tests/bare_root.sh [bookworm | trixie] [--first-steps | --packages]
 # Runs both commands of README.md in a bare root folder of Debian: debootstrap creates it in a
 # temporary folder ($TMPDIR, or /tmp) from the mirror that this machine's apt uses, the committed
 # state of this tree is cloned into it, and cases/run.sh and tests/run.sh run there. --first-steps
-# stops when the packages of both commands are installed and CMake has configured.
+# stops when the packages of both commands are installed and CMake has configured. --packages also
+# makes the Debian packages (cases/cmake/packages.sh) and installs, uses and removes them in a second
+# bare root folder (tests/installed_packages.sh).
 #
 # It needs root, debootstrap, git and 12 GB of disk. If one of the first three is missing, it prints
 # so and ends with exit code 77. Processes and mounts are in separate namespaces and end with this
@@ -20,14 +22,15 @@ mirror() {
     sed -nE 's/^(URIs:|deb( +\[[^]]*\])?) +([^ ]*\/debian)\/?( .*)?$/\3/p' | sed -n 1p
 }
 
-# in_root COMMAND : runs a line of shell in the clone, without the environment of this machine.
+# in_root COMMAND : runs a line of shell in the home folder of root, without the environment of this
+# machine.
 in_root() {
   env -i HOME=/root TERM=dumb PATH=/usr/sbin:/usr/bin:/sbin:/bin chroot "$bare" \
-    sh -euc "cd ~/flexmorph && $1" </dev/null
+    sh -euc "cd && $1" </dev/null
 }
 
-# fill SUITE MIRROR LAST : makes the root folder $bare and runs the commands; called in namespaces.
-fill() {
+# make_root SUITE MIRROR : makes the root folder $bare.
+make_root() {
   echo "Making a bare root folder of $1 in $bare"
   debootstrap --variant=minbase "$1" "$bare" "$2" </dev/null >"$bare.log" 2>&1 ||
     { tail -n 5 "$bare.log" >&2 && stop "debootstrap failed"; }
@@ -37,15 +40,29 @@ fill() {
   apt-config dump | grep -E '^Acquire::https?::Proxy' >"$bare/etc/apt/apt.conf.d/proxy" || true
   mount -t proc proc "$bare/proc"
   mount --rbind /dev "$bare/dev"
+}
+
+# fill SUITE MIRROR LAST : makes root folders and runs the commands; called in namespaces.
+fill() {
+  make_root "$1" "$2"
   git -c safe.directory='*' clone -q --no-hardlinks "$root" "$bare/root/flexmorph"
   if [ "$3" = first ]; then
     # `root` is set by cases/run.sh and tests/run.sh before they read setup.sh.
-    in_root 'root=$PWD && . cases/cmake/setup.sh && with_tests=1 && check_disk 4 && install_packages &&
-             cmake -S . -B build -G Ninja -DFLEXMORPH_TESTS=ON'
-  else
-    in_root cases/run.sh
-    in_root tests/run.sh
+    in_root 'cd flexmorph && root=$PWD && . cases/cmake/setup.sh && with_tests=1 && check_disk 4 &&
+             install_packages && cmake -S . -B build -G Ninja -DFLEXMORPH_TESTS=ON'
+    return
   fi
+  in_root 'cd flexmorph && cases/run.sh'
+  in_root 'cd flexmorph && tests/run.sh'
+  [ "$3" = packages ] || return 0
+  in_root 'apt-get install -y --no-install-recommends lintian dpkg-dev file >lintian.log &&
+           flexmorph/cases/cmake/packages.sh flexmorph/build && lintian --fail-on error flexmorph/build/*.deb'
+  made="$bare/root/flexmorph"
+  bare="$bare-of-a-user"
+  make_root "$1" "$2"
+  mkdir "$bare/root/packages"
+  cp "$made"/build/*.deb "$made/tests/installed_packages.sh" "$bare/root/packages"
+  in_root packages/installed_packages.sh
 }
 
 if [ "${1-}" = --in-namespaces ]; then
@@ -61,6 +78,7 @@ for option in "$@"; do
   case "$option" in
     bookworm | trixie) suite=$option ;;
     --first-steps) last=first ;;
+    --packages) last=packages ;;
     -h | --help) sed -n '2,/^set -eu/s/^# \{0,1\}//p' "$0" && exit 0 ;;
     *) echo "tests/bare_root.sh: unknown option '$option'" >&2 && exit 2 ;;
   esac

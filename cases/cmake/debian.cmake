@@ -63,4 +63,10 @@ file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/triggers)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libflexmorph${soversion} (= ${PROJECT_VERSION}), libeigen3-dev")
+# Programs that link the static libraries need the libraries of packages.txt, too.
+file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/packages.txt lines REGEX "^(lib|coinor-lib|nlohmann)[^ ]*-dev")
+list(TRANSFORM lines REPLACE " .*" "")
+list(FILTER lines EXCLUDE REGEX "^pybind11|^libjs-")
+list(APPEND lines pkgconf)
+list(JOIN lines ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS)
 include(CPack)

@@ -50,6 +50,8 @@ if(TARGET flexmorph_python)
   install(FILES ${flexmorph_python_sources}
                 ${PROJECT_BINARY_DIR}/python/flexmorph/__init__.pyi COMPONENT python
           DESTINATION ${FLEXMORPH_PYTHON_DIR}/flexmorph)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/cases/python/examples COMPONENT python
+          DESTINATION share/doc/python3-flexmorph PATTERN __pycache__ EXCLUDE)
 endif()
 
 # The shared library is linked from the objects of the static ones. Programs that use it need no
