@@ -144,6 +144,11 @@ void MotionColumns::describe_energies() {
   describe(kEnergyErrorColumn, "J",
            "energy error: energy minus initial energy minus work of all powers",
            ColumnGroup::energy);
+  // Springs and other bodies would hide what the designs change.
+  if (!scene_.springs.empty() || scene_.bodies.size() > scene_.designs.size())
+    for (const BodyDesign& design : scene_.designs) designed_.push_back(design.body);
+  if (!designed_.empty())
+    describe(kDesignedColumn, "J", "strain energy of the designed bodies", ColumnGroup::energy);
   if (!balance_) return;
   for (const std::string& name : columns_of_terms(scene_)) {
     describe(name, "J", "energy dissipated by the terms of the bodies", ColumnGroup::term);
@@ -192,6 +197,12 @@ void MotionColumns::append_bodies(const fem::MotionStep& step) {
 void MotionColumns::append_energies(const fem::MotionStep& step) {
   row_.insert(row_.end(), {step.energies.kinetic, step.energies.strain, step.energies.potential,
                            step.energy_error});
+  if (!designed_.empty()) {
+    double strain = 0;
+    for (const std::string& body : designed_)
+      strain += step.model.energies(step.x, step.model.body(body)).strain;
+    row_.push_back(strain);
+  }
   if (!balance_) return;
   for (const auto energy : terms_) row_.push_back(step.*energy);
   if (!scene_.is_mechanism()) return;

@@ -52,6 +52,7 @@ class MotionColumns {
   std::vector<DeflectingPoint> points_;             // observed points of designed bodies
   std::vector<const Body*> flowing_;                // bodies with a column for their length
   std::vector<double fem::MotionStep::*> terms_;    // energies in the columns of terms
+  std::vector<std::string> designed_;               // bodies of the column of designed bodies
   MechanismColumns mechanism_;
   std::vector<ColumnInfo> columns_;
   std::vector<double> row_;

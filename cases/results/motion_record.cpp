@@ -15,7 +15,8 @@ void archive(Archive& memory, PlaneFrame& f) { memory(f.title, f.plates, f.outli
 namespace cases {
 
 double MotionRecord::strain_integral() const {
-  const std::vector<double>&t = time(), &strain = table.at(kStrainColumn);
+  const std::vector<double>* designed = table.find(kDesignedColumn);
+  const std::vector<double>&t = time(), &strain = designed ? *designed : table.at(kStrainColumn);
   double out = 0;
   for (std::size_t i = 1; i < t.size(); ++i)
     out += 0.5 * (t[i] - t[i - 1]) * (strain[i - 1] + strain[i]);

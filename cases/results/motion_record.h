@@ -19,7 +19,7 @@ namespace cases {
 
 /// Names of the columns that the program reads from tables.
 inline constexpr const char *kTimeColumn = "time", *kKineticColumn = "energy.kinetic",
-                            *kStrainColumn = "energy.strain",
+                            *kStrainColumn = "energy.strain", *kDesignedColumn = "energy.designed",
                             *kPotentialColumn = "energy.potential",
                             *kEnergyErrorColumn = "energy.error", *kFactorColumn = "load_factor";
 /// Ending of the names of columns with tip deflections.
@@ -38,7 +38,8 @@ struct MotionRecord {
 
   /// Returns the times of the rows (n_rows) [s].
   const std::vector<double>& time() const { return table.at(kTimeColumn); }
-  /// Returns the integral ∫ U dt of the strain energy of the model by the trapezoidal rule [J s].
+  /// Returns the integral ∫ U dt of the strain energy by the trapezoidal rule [J s]: of the
+  /// designed bodies, if the table has a column for their energy, otherwise of the model.
   double strain_integral() const;
   /// Returns the largest |tip deflection| of a body [m]; nothing if the table has no such column.
   std::optional<double> amplitude(const std::string& body) const;

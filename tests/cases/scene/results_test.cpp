@@ -11,6 +11,7 @@
 #include "cases/results/motion_columns.h"
 #include "cases/results/schema.h"
 #include "cases/results/warnings.h"
+#include "cases/run/motion_run.h"
 #include "tests/cases/scenes.h"
 #include "tests/support/errors.h"
 
@@ -42,6 +43,27 @@ TEST(MotionRecord, IntegratesTheStrainEnergy) {
     record.table.add_row(std::vector<double>{t, 2 + 3 * t});
   EXPECT_NEAR(record.strain_integral(), 10, 1e-14);
   EXPECT_FALSE(record.amplitude("arm"));
+}
+
+// A spring stores much more energy than the designed rocker. What compares designs is the energy of
+// the model without that of the spring, which has a column of its own.
+TEST(MotionRecord, ComparesDesignedBodiesWithoutSprings) {
+  const Changes alone = {"time.end=0.03", "time.step=2e-3"};
+  Changes spring = alone;
+  spring.push_back("spring=[{type='torsion', name='coil', b='shaft', stiffness=40.0}]");
+  const MotionRecord record = run_motion(PreparedCase(read("four_bar", spring)), {}).record;
+  const std::vector<double>&designed = record.table.at(kDesignedColumn),
+        &strain = record.table.at(kStrainColumn), &coil = record.table.at("coil.energy"),
+        &t = record.time();
+  double integral = 0;
+  for (size_t k = 0; k < t.size(); ++k) {
+    EXPECT_GT(coil[k], 10 * designed[k]);
+    EXPECT_NEAR(designed[k], strain[k] - coil[k], 1e-12 * strain[k]);
+    if (k > 0) integral += 0.5 * (t[k] - t[k - 1]) * (designed[k] + designed[k - 1]);
+  }
+  EXPECT_NEAR(record.strain_integral(), integral, 1e-15 * strain[0]);
+  const MotionRecord without = run_motion(PreparedCase(read("four_bar", alone)), {}).record;
+  EXPECT_EQ(without.table.find(kDesignedColumn), nullptr);
 }
 
 /// Returns a motion over two periods whose tip deflection is mean + size sin(2 pi t), and whose
