@@ -5,8 +5,10 @@
 #include <limits>
 #include <ranges>
 
+#include "cases/assembly/build.h"
 #include "cases/scene/elements/row.h"
 #include "cases/scene/joints/row.h"
+#include "fem/dynamics/integrators/energy_momentum.h"
 #include "geometry/text.h"
 #include "io/files.h"
 
@@ -257,7 +259,10 @@ Levels rho_levels(const Scene& scene, const io::CaseFile&) {
 std::string no_integrator(const Scene& scene, Part part) {
   if (scene.has_eulerian_lines()) return "free mesh lines need \"generalized_alpha\"";
   if (scene.time.tolerance || is_explicit(scene)) return "the case uses adaptive steps";
-  return no_time_or_design(scene, part);
+  const std::string no_series = no_time_or_design(scene, part);
+  if (no_series.empty() && !fem::has_mean_forces(build_mechanism(scene).model))
+    return "a term or a force element does not support \"energy_momentum\"";
+  return no_series;
 }
 
 Levels integrator_levels(const Scene& scene, const io::CaseFile& file) {

@@ -293,6 +293,20 @@ TEST(Parameters, AreThoseOfTheScene) {
             (Words{"elements", "step", "loads", "design_mesh", "void", "sharpness", "band"}));
 }
 
+// "energy_momentum" needs mean forces, which linear springs have and torsion springs do not have.
+TEST(Parameters, IntegratorsThatForceElementsSupport) {
+  const auto reason = [](const std::string& spring) {
+    const std::vector<std::string> change = {"spring=[{" + spring + "}]"};
+    const Scene scene = read_scene(io::CaseFile(find_case("four_bar"), change));
+    return parameter("integrator").absent(scene, Part::motion);
+  };
+  EXPECT_EQ(
+      reason("type='linear', name='s', a='ground', point_a=[0.0, 0.0], b='shaft', stiffness=1.0"),
+      "");
+  EXPECT_NE(reason("type='torsion', name='s', b='shaft', stiffness=1.0").find("energy_momentum"),
+            std::string::npos);
+}
+
 TEST(Parameters, LevelsOfOneParameterLeaveTheOthersAlone) {
   const io::CaseFile file(find_case("short_beam"));
   const Scene scene = read_scene(file);

@@ -2,6 +2,13 @@
 
 namespace flexmorph::fem {
 
+bool has_mean_forces(const Model& model) {
+  const auto has = [](const auto& each) { return each.mean != nullptr; };
+  return std::ranges::all_of(model.force_elements(), has) &&
+         std::ranges::all_of(model.bodies(),
+                             [&](const Body& b) { return std::ranges::all_of(b.terms, has); });
+}
+
 EnergyMomentum::EnergyMomentum(Workspace& model, const EnergyMomentumSettings& settings)
     : StepSolver(model, settings, "energy_momentum",
                  "This integrator has no numerical damping. Reduce time.step, or set integrator = "

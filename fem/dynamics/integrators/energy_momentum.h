@@ -6,6 +6,10 @@
 
 namespace flexmorph::fem {
 
+/// Returns true if all terms and force elements of a model have the mean forces of a step that
+/// EnergyMomentum needs (MeanForceTerm, MeanForceElement).
+bool has_mean_forces(const Model& model);
+
 /// A mid-point integrator that conserves energy and momenta if nothing drives the model and no
 /// material is fed.
 ///
