@@ -62,6 +62,7 @@ CLI::Option* add_repeated(CLI::App& command, const std::string& names,
                           const std::string& text) {
   return command.add_option(names, values, text)
       ->type_name(shown)
+      ->option_text(shown)
       ->take_all()
       ->allow_extra_args(false);
 }
@@ -78,7 +79,8 @@ void add_number(CLI::App& command, const std::string& names, double& value, doub
 
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
   add_repeated(command, "--set", overrides, "KEY=VALUE",
-               "changes a key of the case; KEY= without a value removes the key");
+               "changes a key of the case, may be repeated; KEY= without a value removes the key "
+               "or the entry of a list");
 }
 
 void add_threads(CLI::App& command, int& threads) {

@@ -68,6 +68,17 @@ CaseNode& entry_of(CaseNode& list, const std::string& so_far, const std::vector<
                      joined(labels));
 }
 
+/// Removes the entry of this label or number from a list of tables. @return false: there is none
+bool remove_entry(CaseNode& list, const std::string& entry) {
+  const std::vector<std::string> labels = entry_labels(list);
+  for (size_t i = 0; i < labels.size(); ++i)
+    if (entry == labels[i] || entry == std::to_string(i)) {
+      list.entries.erase(list.entries.begin() + static_cast<std::ptrdiff_t>(i));
+      return true;
+    }
+  return false;
+}
+
 void collect_unknown(const CaseNode& node, const std::string& path,
                      std::vector<Complaint>& messages) {
   if (node.kind == CaseNode::Kind::list) {
@@ -283,7 +294,14 @@ void CaseDocument::apply(const std::string& change) {
       table.shown = "{...}";
       node = &here->entries.emplace_back(std::move(table));
     }
-    if (is_list_of_tables(*node)) node = &entry_of(*node, so_far, keys, next, option);
+    if (is_list_of_tables(*node)) {
+      if (removes && next + 1 == keys.size() && remove_entry(*node, keys[next])) {
+        if (node->entries.empty())
+          std::erase_if(here->entries, [&](const CaseNode& each) { return each.key == key; });
+        return changes.push_back(change);
+      }
+      node = &entry_of(*node, so_far, keys, next, option);
+    }
     if (node->kind != CaseNode::Kind::table)
       throw Error::input(option + ": " + so_far + " is not a table and has no keys");
     here = node;

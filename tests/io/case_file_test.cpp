@@ -350,6 +350,12 @@ TEST_F(CaseFiles, OverridesWithoutAValueTakeKeysAway) {
   const CaseFile again(scratch_.write("again.toml", file.text()));
   EXPECT_FALSE(again.root().has(kVerify));
   EXPECT_TRUE(again.root().has(kTime));
+
+  const CaseFile less(scratch_.write("less.toml", kText), Overrides{"body.plate="});
+  EXPECT_EQ(less.root().tables(kBody).size(), 1u);
+  EXPECT_TRUE(less.root().tables(kBody).at(0).has(quick("body", "when")));
+  const CaseFile none(scratch_.write("none.toml", kText), Overrides{"body.1=", "body.plate="});
+  EXPECT_FALSE(none.root().has(kBody));
 }
 
 // The effective case is again a case, with the changes in it and every other value unchanged.
