@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kWidth = 960, kMaxHeight = 720;      // pixels
 constexpr int kTitle = 34, kBar = 46, kSide = 20;  // margins above, below and beside
+constexpr int kMark = 26;                          // height of the line that explains the mark
+constexpr double kLetter = 7.3;                    // mean width of a letter of the title
 constexpr double kLargest = 0.125;  // largest displacement, as a fraction of the size of the part
 constexpr std::array<unsigned char, 3> kInPlace = {225, 225, 225};
 
@@ -57,6 +59,14 @@ class Painter {
         for (const auto& part : kParts) paint(t, part, moved);
       }
     return std::move(out_);
+  }
+
+  /// Returns the pixel at which the node next to a position is shown displaced.
+  Vec2 pixel_of(const Vec2& position) const {
+    const auto nearest = std::ranges::min_element(
+        mesh_.points, {}, [&](const Vec2& p) { return (p - position).squaredNorm(); });
+    const Vec2 at = displaced(static_cast<std::size_t>(nearest - mesh_.points.begin()));
+    return {scale_ * (at.x() - corner_.x()), scale_ * (corner_.y() - at.y())};
   }
 
  private:
@@ -125,6 +135,16 @@ std::string bar(const PartPicture& picture, double x, double y, double width) {
                to_text(picture.upper, 3) + " " + picture.unit + " or more");
 }
 
+/// Returns a black circle with a white edge, which is visible on all colours.
+std::string circle(const Vec2& at) {
+  std::string out;
+  for (const auto& [color, width] : {std::pair("#fff", 5), {"#000", 2}})
+    out += "<circle cx=\"" + to_text(at.x(), 6) + "\" cy=\"" + to_text(at.y(), 6) +
+           "\" r=\"8\" fill=\"none\" stroke=\"" + color + "\" stroke-width=\"" +
+           std::to_string(width) + "\"/>\n";
+  return out;
+}
+
 }  // namespace
 
 std::string part_svg(const PartMesh& mesh, const PartPicture& picture) {
@@ -140,9 +160,16 @@ std::string part_svg(const PartMesh& mesh, const PartPicture& picture) {
     throw Error::numerical(
         "picture of a part: a value is not finite, or the upper limit of the colours is not "
         "positive");
-  const Pixels pixels = Painter(mesh, picture).paint();
-  const int width = std::max(pixels.width, kWidth / 2) + 2 * kSide,
-            height = pixels.height + kTitle + kBar;
+  Painter painter(mesh, picture);
+  const Pixels pixels = painter.paint();
+  std::string marks;
+  const double below = pixels.height + kTitle + 10;
+  if (picture.marked)
+    marks = circle(painter.pixel_of(*picture.marked) + Vec2(kSide, kTitle)) +
+            circle({kSide + 10, below + 44}) + words(kSide + 26, below + 49, "start", picture.mark);
+  const int title = static_cast<int>(kLetter * static_cast<double>(picture.title.size()));
+  const int width = std::max({pixels.width, kWidth / 2, title}) + 2 * kSide,
+            height = pixels.height + kTitle + kBar + (picture.marked ? kMark : 0);
   const std::string box = std::to_string(width) + " " + std::to_string(height);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" "
          "xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 " +
@@ -151,8 +178,8 @@ std::string part_svg(const PartMesh& mesh, const PartPicture& picture) {
          words(kSide, 20, "start", picture.title) + "<image x=\"" + std::to_string(kSide) +
          "\" y=\"" + std::to_string(kTitle) + "\" width=\"" + std::to_string(pixels.width) +
          "\" height=\"" + std::to_string(pixels.height) + "\" xlink:href=\"data:image/png;base64," +
-         base64(png(pixels)) + "\"/>\n" +
-         bar(picture, kSide, pixels.height + kTitle + 10, 0.4 * kWidth) + "</svg>\n";
+         base64(png(pixels)) + "\"/>\n" + bar(picture, kSide, below, 0.4 * kWidth) + marks +
+         "</svg>\n";
 }
 
 double clear_magnification(const PartMesh& mesh, std::span<const double> displacement) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -19,6 +20,9 @@ struct PartPicture {
   std::span<const double> displacement = {};  ///< Displacements (2 n) [m]; empty: none.
   double upper = 0;  ///< Value with the lightest colour, which larger values have, too; > 0.
   double magnification = 1;  ///< Factor by which displacements are magnified.
+
+  std::optional<Vec2> marked = {};  ///< Position of a node that a circle marks [m].
+  std::string mark = {};            ///< Meaning of the circle, beside the bar of colours.
 
   /// Value 1 for triangles that are not shown displaced.
   std::span<const signed char> left_out = {};

@@ -97,6 +97,13 @@ TEST(PartPicture, ShowsTheDisplacedPart) {
   expect_color(found.at(0.5, 0.9), map_color(0.5));
   expect_color(found.at(0.5, 0.5), map_color(0.5));
   expect_color(found.at(0.5, 0.1), {225, 225, 225});
+  // 960 pixels for 2 m; the node next to the middle is shown at (1, 1) of 1.5 m, and the picture is
+  // 20 pixels from the left and 34 pixels from the top.
+  picture.marked = Vec2(1.1, 0.55);
+  picture.mark = "the middle";
+  const std::string marked = part_svg(mesh, picture);
+  EXPECT_NE(marked.find("<circle cx=\"500\" cy=\"274\""), std::string::npos);
+  EXPECT_NE(marked.find(">the middle<"), std::string::npos);
   const std::array<signed char, 2> left_out = {0, 1};  // the upper right half
   picture.left_out = left_out;
   const Decoded half(part_svg(mesh, picture));

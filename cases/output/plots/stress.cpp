@@ -51,6 +51,8 @@ std::string stress_plot(const VerifiedOutline& outline) {
   picture.magnification = io::clear_magnification(j.mesh, picture.displacement);
   picture.unit = "Pa";
   picture.left_out = j.omitted_triangles;
+  picture.marked = j.shown_stress.at;
+  picture.mark = "largest stress away from loads and supports";
   picture.title = "von Mises stress under load '" + j.shown_load + "', at most " +
                   io::to_text(j.shown_stress.value, 3) + " Pa away from loads and supports; " +
                   displacement_text(picture.magnification);
