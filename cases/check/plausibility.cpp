@@ -53,7 +53,7 @@ bool has_density(const Scene& scene) { return !scene.statics || scene.gravity; }
 /// Returns the text for a support.
 std::string to_string(Support support) {
   static const std::array<const char*, 4> kWords = {"free", "supported by one pin", "cantilever",
-                                                    "supported by pins"};
+                                                    "supported at several points"};
   return kWords[static_cast<size_t>(support)];
 }
 
