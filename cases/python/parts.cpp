@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <deque>
 
@@ -214,9 +215,9 @@ class PythonSearch {
   bool iterate(const VectorXd& x) {
     const optim::Point* known = find(x);
     if (known == nullptr) throw py::value_error("iterate(x): evaluate(x) comes first");
-    const optim::Point point = *known;
+    if (known != &recorded_) recorded_ = *known;
     const py::gil_scoped_release release;
-    return search().row(++rows_, point);
+    return search().row(++rows_, recorded_);
   }
 
  private:
@@ -224,17 +225,21 @@ class PythonSearch {
     if (search_ == nullptr) throw std::runtime_error("the search has ended");
     return *search_;
   }
+  /// Returns the design x if it is the last one of the history or one of the last evaluated ones.
   const optim::Point* find(const VectorXd& x) const {
-    for (const optim::Point& p : points_)
-      if (p.x.size() == x.size() &&
-          std::memcmp(p.x.data(), x.data(), sizeof(double) * static_cast<size_t>(x.size())) == 0)
-        return &p;
-    return nullptr;
+    const auto is_x = [&x](const optim::Point& p) {
+      return p.x.size() == x.size() &&
+             std::memcmp(p.x.data(), x.data(), sizeof(double) * static_cast<size_t>(x.size())) == 0;
+    };
+    if (is_x(recorded_)) return &recorded_;
+    const auto found = std::ranges::find_if(points_, is_x);
+    return found == points_.end() ? nullptr : &*found;
   }
 
   optim::Search* search_;
   optim::Settings settings_;
   std::deque<optim::Point> points_;
+  optim::Point recorded_;  // design of the last row of the history
   int rows_ = 0;
 };
 

@@ -4,7 +4,9 @@
 Usage: run_commands.py PAGE.md PROGRAM [--top FOLDER]
 
 All code blocks marked `sh` are run in their order, in one empty folder, with the folder of PROGRAM on
-the search path. With --top, this folder has links to `cases` of FOLDER and to the folder `build` of
+the search path. Those marked `python` are run in one Python process after them, in their order; the
+packages NumPy, SciPy, pandas and others are imported, and a block is left out if one that it uses is
+not installed. With --top, this folder has links to `cases` of FOLDER and to the folder `build` of
 PROGRAM, as the top of the source tree has. A code block marked `text` that follows is the expected
 output: its words appear in the output in this order. `...` stands for any words. Numbers agree within
 5 %, because last digits differ between processors. For the same reason one verdict on a design
@@ -15,6 +17,7 @@ Blocks after the line `<!-- not run by the test of documents: REASON -->` are no
 """
 
 import argparse
+import json
 import os
 import pathlib
 import re
@@ -31,11 +34,39 @@ SHELL = """flexmorph() { command flexmorph "$@" || { code=$?; [ $code = 5 ] || r
 """
 
 
+# Runs blocks in one Python process: each line of the standard input is a block in JSON; each line of
+# the standard output tells whether it succeeded, and what it printed.
+SESSION = """
+import contextlib, importlib, io, json, re, sys, traceback
+names = {"__name__": "__main__"}
+absent = []
+for module in ("numpy", "scipy.optimize", "matplotlib", "pandas", "meshio", "cyipopt", "nlopt"):
+    try:
+        importlib.import_module(module)
+        names[module.split(".")[0]] = sys.modules[module.split(".")[0]]
+    except ImportError:
+        absent.append(module)
+for line in sys.stdin:
+    code, printed, good = json.loads(line), io.StringIO(), True
+    missing = [name for name in absent if re.search(rf"\\b{name}\\.", code)]
+    if missing:
+        printed.write("left out: not installed: " + " ".join(missing))
+    else:
+        with contextlib.redirect_stdout(printed):
+            try:
+                exec(compile(code, "<block>", "exec"), names)
+            except BaseException:
+                good = False
+                printed.write(traceback.format_exc())
+    print(json.dumps([good, bool(missing), printed.getvalue()]), flush=True)
+"""
+
+
 class Block:
     """A code block that is run, and the text that it prints."""
 
-    def __init__(self, line, commands):
-        self.line, self.commands, self.expected = line, commands, None
+    def __init__(self, line, mark, commands):
+        self.line, self.mark, self.commands, self.expected = line, mark, commands, None
 
 
 def blocks_of(text):
@@ -47,8 +78,8 @@ def blocks_of(text):
             if mark is None:
                 mark, begin, lines = line.strip()[3:].strip(), number, []
                 continue
-            if mark == "sh" and not skipped:
-                previous = Block(begin, "\n".join(lines))
+            if mark in ("sh", "python") and not skipped:
+                previous = Block(begin, mark, "\n".join(lines))
                 out.append(previous)
             elif mark == "text" and previous:
                 previous.expected = "\n".join(lines)
@@ -94,6 +125,26 @@ def missing_words(expected, output):
     return None
 
 
+class Session:
+    """A Python process that runs the blocks of a page."""
+
+    def __init__(self, folder, environment):
+        self.process = subprocess.Popen([sys.executable, "-c", SESSION], cwd=folder, text=True,
+                                        env={**environment, "MPLBACKEND": "agg"},
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+    def run(self, commands):
+        """Runs a block and returns whether it succeeded, whether it was left out, and its output."""
+        self.process.stdin.write(json.dumps(commands) + "\n")
+        self.process.stdin.flush()
+        return json.loads(self.process.stdout.readline())
+
+    def end(self):
+        """Ends the process."""
+        self.process.stdin.close()
+        self.process.wait()
+
+
 def run(block, folder, environment):
     """Runs a block and returns exit code and output. The environment is kept for the next block."""
     kept = folder.with_suffix(".environment")
@@ -122,7 +173,9 @@ def main():
     blocks = blocks_of(options.page.read_text(encoding="utf-8"))
     assert blocks, "the page has no commands"
     program = options.program.resolve()
-    environment = {**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}"}
+    # `python3` of the page is the Python that runs this test.
+    python = pathlib.Path(sys.executable).parent
+    environment = {**os.environ, "PATH": f"{program.parent}:{python}:{os.environ['PATH']}"}
     environment.pop("COLUMNS", None)
     failures = 0
     with tempfile.TemporaryDirectory() as scratch:
@@ -131,15 +184,26 @@ def main():
         if options.top:
             (folder / "cases").symlink_to(options.top.resolve() / "cases")
             (folder / "build").symlink_to(program.parents[1])
-        for block in blocks:
+        session = None
+        for block in sorted(blocks, key=lambda each: each.mark == "python"):
             print(f"{options.page.name}:{block.line}: {block.commands.splitlines()[0]}", flush=True)
-            code, output = run(block, folder, environment)
+            if block.mark == "python":
+                session = session or Session(folder, environment)
+                good, left_out, output = session.run(block.commands)
+                code = 0 if good else 1
+                if left_out:
+                    print(output)
+                    continue
+            else:
+                code, output = run(block, folder, environment)
             missing = missing_words(block.expected, output) if block.expected else None
             if code != 0:
                 print(f"exit code {code}. The output is:\n{output}")
             elif missing:
                 print(f"the output does not have these words:\n{missing}\nThe output is:\n{output}")
             failures += code != 0 or missing is not None
+        if session:
+            session.end()
     print(f"{len(blocks)} blocks, {failures} failures")
     return 1 if failures else 0
 

@@ -199,6 +199,18 @@ class Optimizers(unittest.TestCase):
                                                  "optimizer.name": "own_descent"})
         self.assertTrue(case.run().status.startswith("done"))
 
+    def test_the_last_design_is_known_after_many_trials(self):
+        def patience(search):
+            x = search.x0
+            search.evaluate(x)
+            while search.iterate(x):
+                for k in range(1, 13):
+                    search.evaluate(np.clip(x + 1e-4 * k, search.lower, search.upper))
+
+        flexmorph.add_optimizer("own_patience", patience)
+        problem = flexmorph.load("short_beam", set=COARSE).problem(stage="coarse")
+        self.assertEqual(problem.solve("own_patience", stages=False, max_iterations=3).nit, 3)
+
     def test_errors_of_an_optimizer_are_raised(self):
         flexmorph.add_optimizer("own_failure", lambda search: 1 / 0)
         problem = flexmorph.load("short_beam", set=COARSE).problem(stage="coarse")
