@@ -18,7 +18,7 @@ struct StepOperations {
 /// Estimates the operations of a step from the numbers of elements, shape functions, Gauss points
 /// and unknowns, and from the mean numbers of evaluations by Newton's method in the shipped cases.
 /// The estimate is within a factor of 2 of the instructions counted by valgrind in a build for all
-/// processors (tests/README.md). It is not valid for `minimal_coordinates`.
+/// processors. It is not valid for `minimal_coordinates`.
 StepOperations step_operations(const Scene& scene, const Mechanism& mechanism);
 
 /// The expected cost of one phase of a run.

@@ -69,6 +69,9 @@ Scene read_verified(const std::string& path, std::vector<std::string> changes) {
 /// @throws Error (input) for a case that cannot be read, or a folder without a finished run
 GivenCase given_case(const VerifyOptions& options) {
   const bool is_run = fs::is_directory(options.case_name);
+  if (!fs::exists(options.case_name) && options.case_name.find('/') != std::string::npos)
+    throw Error::input("'" + options.case_name +
+                       "': there is no run folder or case file of this name");
   const std::string path = is_run ? finished_case(options.case_name) : find_case(options.case_name);
   std::vector<std::string> changes = options.overrides;
   io::CaseFile file(path, changes);

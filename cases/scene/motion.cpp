@@ -67,7 +67,8 @@ const io::Key& kRhoInf = io::key("time", "rho_inf")
 const io::Choice<Start> kStart(
     io::key("time", "start")
         .otherwise_as(
-            "`automatic`; `rigid` without hubs, with free lines or without flexible bodies")
+            "`automatic`; `rigid` without flexible bodies, or without a mechanism where no "
+            "hub carries the body or a line is free")
         .description("Initial state; `automatic`: static equilibrium if all start velocities are "
                      "0, else `steady`."),
     "an initial state",

@@ -232,6 +232,10 @@ TEST_F(Bores, WrongDrawingsAreRefused) {
   refused("arm=" + good, {"--part arm=", "no design", "'arm'", "plate"});
   refused(good, {"--part " + good + ": ", "BODY=FILE"});
   refused("plate=" + scratch / "none.dxf", {"none.dxf"});
+  const Ended none = verify(scratch, scratch / "no_run", "plate=" + good);
+  EXPECT_EQ(none.code, 2);
+  EXPECT_TRUE(testing::mentions_all(none.err, {"no_run", "run folder", "case file"}));
+  EXPECT_EQ(none.err.find("four_bar"), std::string::npos) << "shipped cases are listed";
   refused("plate=" + scratch.write("part.svg", "<svg/>"), {"part.svg: ", ".dxf", ".step", ".stp"});
   // Coordinates in metres with the unit millimetre or no unit, and coordinates in millimetres with
   // the unit metre, are refused.
