@@ -6,7 +6,7 @@ set(CPACK_PACKAGE_NAME flexmorph)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 # Who makes the packages is their maintainer: DEBFULLNAME and DEBEMAIL, as for Debian's own tools.
 set(maintainer "The Flexmorph authors")
-set(address flexmorph@localhost.localdomain)
+set(address flexmorph@example.org)
 if(DEFINED ENV{DEBFULLNAME})
   set(maintainer $ENV{DEBFULLNAME})
 endif()
