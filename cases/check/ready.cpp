@@ -126,7 +126,8 @@ std::string cases_folder() {
     const fs::path installed = prefix / "share/flexmorph/cases";
     if (!beside.empty() && fs::is_directory(installed, none)) return installed.string();
   }
-  return kCasesFolder;
+  // A program that contains the static libraries can be anywhere.
+  return fs::is_directory(kCasesFolder, none) ? kCasesFolder : FLEXMORPH_INSTALLED_CASES;
 }
 
 std::string located_refusal(const Scene& scene, const std::string& message) {

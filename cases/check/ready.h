@@ -38,7 +38,8 @@ ReadyCase ready_case(io::CaseFile file, std::span<const std::string> overrides,
 
 /// Returns the folder of the shipped cases. For an installed program or shared library it is
 /// share/flexmorph/cases beside its folder bin/, lib/ or lib/ARCHITECTURE/, and for the Python
-/// package beside lib/, even if the installation was moved; otherwise it is in the source tree.
+/// package beside lib/, even if the installation was moved. Otherwise it is in the source tree, or,
+/// without a source tree, below the prefix for which Flexmorph was configured.
 std::string cases_folder();
 /// Returns the path of a case file: the path itself, or the path of the shipped case of this name.
 /// @throws Error (input) naming the shipped cases.
