@@ -13,36 +13,13 @@
 #include <vector>
 
 #include "optim/mmc/loads/compliance_evaluator.h"
+#include "tests/optim/smooth_design.h"
 #include "tests/support/sections.h"
 
 namespace flexmorph::mmc {
 namespace {
 
-/// Scale factors that are smooth functions of one parameter s.
-struct SmoothDesign {
-  VectorXd phase, speed;
-
-  SmoothDesign(const Grid& g, unsigned seed) : phase(g.n_cells()), speed(g.n_cells()) {
-    std::mt19937 engine(seed);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    for (int c = 0; c < g.n_cells(); ++c) {
-      phase(c) = 2 * std::numbers::pi * uniform(engine);
-      speed(c) = 0.5 + uniform(engine);
-    }
-  }
-  // log10 of the stiffness varies between -3 and 0, the mass between 0.02 and 1.
-  VectorXd stiffness(double s) const {
-    return (1.5 * std::numbers::ln10 * ((phase + s * speed).array().sin() - 1)).exp();
-  }
-  VectorXd d_stiffness(double s) const {
-    return stiffness(s).array() * 1.5 * std::numbers::ln10 * speed.array() *
-           (phase + s * speed).array().cos();
-  }
-  VectorXd mass(double s) const { return 0.51 + 0.49 * (phase + s * speed).array().sin(); }
-  VectorXd d_mass(double s) const {
-    return 0.49 * speed.array() * (phase + s * speed).array().cos();
-  }
-};
+using fem::kThinSection;
 
 /// Returns n loads of a plate that grows at speed v out of a hub rotating with omega, with
 /// additional bending and axial vibration. The root moves from column `last` to `first` in steps of
@@ -115,8 +92,8 @@ TEST_P(EveryLoadDefinition, TaylorRemainderIsOfSecondOrder) {
   for (bool compress : {false, true}) {
     for (unsigned seed : {1u, 2u, 3u}) {
       const SmoothDesign start(kGrid, seed + 10), design(kGrid, seed);
-      ComplianceEvaluator compliance(loads, fem::kThinSection, settings(compress),
-                                     start.stiffness(0), start.mass(0));
+      ComplianceEvaluator compliance(loads, kThinSection, settings(compress), start.stiffness(0),
+                                     start.mass(0));
       ComplianceEvaluator::Value at;
       compliance.evaluate(design.stiffness(0), design.mass(0), at);
       const double f = at.f;
@@ -167,10 +144,9 @@ TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
   for (double smallest : {1e-3, 1e-6}) {
     const VectorXd factor = random_factors(kGrid, smallest, 5);
     for (Support support : {Support::moving_root, Support::far_end}) {
-      ComplianceEvaluator compliance(loads, fem::kThinSection,
-                                     {LoadDefinition::stiffness, support, true, 1e-10}, factor,
-                                     factor);
-      const fem::StaticSolver solver(kGrid, fem::kThinSection);
+      ComplianceEvaluator compliance(
+          loads, kThinSection, {LoadDefinition::stiffness, support, true, 1e-10}, factor, factor);
+      const fem::StaticSolver solver(kGrid, kThinSection);
       for (int l = 0; l < 4; ++l) {
         const fem::EslSet& set = loads.sets[static_cast<std::size_t>(l)];
         const VectorXd u = compliance.displacement(factor, factor, l);
@@ -187,13 +163,13 @@ TEST(Recovery, StiffnessLoadsReturnTheDeformation) {
 TEST(Recovery, FrozenLoadsAgreeBetweenSupports) {
   const fem::EslSets loads = growing_plate(kGrid, 4, 12, 2);
   const VectorXd stiffness = random_factors(kGrid, 1e-6, 6), mass = random_factors(kGrid, 1e-2, 7);
-  ComplianceEvaluator at_root(loads, fem::kThinSection,
+  ComplianceEvaluator at_root(loads, kThinSection,
                               {LoadDefinition::frozen, Support::moving_root, true, 1e-10},
                               stiffness, mass);
-  ComplianceEvaluator far_end(loads, fem::kThinSection,
+  ComplianceEvaluator far_end(loads, kThinSection,
                               {LoadDefinition::frozen, Support::far_end, true, 1e-10}, stiffness,
                               mass);
-  const fem::StaticSolver solver(kGrid, fem::kThinSection);
+  const fem::StaticSolver solver(kGrid, kThinSection);
   for (int l = 0; l < 4; ++l) {
     const VectorXd expected = at_root.displacement(stiffness, mass, l);
     const VectorXd u = far_end.displacement(stiffness, mass, l);
@@ -209,8 +185,8 @@ TEST(Compliance, FrozenEqualsInertiaAtTheStart) {
   const fem::EslSets loads = growing_plate(kGrid, 5, 12, 2);
   const SmoothDesign design(kGrid, 4);
   const VectorXd k = design.stiffness(0), m = design.mass(0);
-  ComplianceEvaluator inertia(loads, fem::kThinSection, {}, k, m);
-  ComplianceEvaluator frozen(loads, fem::kThinSection,
+  ComplianceEvaluator inertia(loads, kThinSection, {}, k, m);
+  ComplianceEvaluator frozen(loads, kThinSection,
                              {LoadDefinition::frozen, Support::moving_root, true, 1e-10}, k, m);
   ComplianceEvaluator::Value a, b;
   inertia.evaluate(k, m, a);
@@ -223,7 +199,7 @@ TEST(Compliance, FrozenEqualsInertiaAtTheStart) {
 // One column of cells under a uniform acceleration along x. Reference: a rod under its own weight.
 TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
   const Grid g{0, 0, 1.0, 0.01, 200, 1};
-  fem::PlaneSection section = fem::kThinSection;
+  fem::PlaneSection section = kThinSection;
   section.poisson_ratio = 0;
   fem::EslSets loads{g, {{}}};
   loads.sets[0].acceleration = VectorXd::Zero(2 * g.n_nodes());
@@ -246,10 +222,8 @@ TEST(Compliance, ARodUnderItsOwnWeightHasTheCompliance) {
 TEST_P(EveryLoadDefinition, CompressionChangesNothing) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 1);
   const SmoothDesign start(kGrid, 20);
-  ComplianceEvaluator all(loads, fem::kThinSection, settings(false), start.stiffness(0),
-                          start.mass(0));
-  ComplianceEvaluator few(loads, fem::kThinSection, settings(true), start.stiffness(0),
-                          start.mass(0));
+  ComplianceEvaluator all(loads, kThinSection, settings(false), start.stiffness(0), start.mass(0));
+  ComplianceEvaluator few(loads, kThinSection, settings(true), start.stiffness(0), start.mass(0));
   EXPECT_EQ(all.n_right_hand_sides(), 40);
   if (GetParam().loads == LoadDefinition::inertia) {
     // x, y of the rotation, Coriolis and root speed, three modes, components of the tip force
@@ -289,9 +263,9 @@ TEST(Compression, FarEndWithFewRootColumns) {
   const fem::EslSets loads = growing_plate(kGrid, 40, 20, 0, 10);
   const SmoothDesign start(kGrid, 20), design(kGrid, 1);
   for (LoadDefinition definition : {LoadDefinition::frozen, LoadDefinition::stiffness}) {
-    ComplianceEvaluator all(loads, fem::kThinSection, {definition, Support::far_end, false, 0},
+    ComplianceEvaluator all(loads, kThinSection, {definition, Support::far_end, false, 0},
                             start.stiffness(0), start.mass(0));
-    ComplianceEvaluator few(loads, fem::kThinSection, {definition, Support::far_end, true, 1e-10},
+    ComplianceEvaluator few(loads, kThinSection, {definition, Support::far_end, true, 1e-10},
                             start.stiffness(0), start.mass(0));
     EXPECT_LT(few.n_right_hand_sides(), 25);
     ComplianceEvaluator::Value a, b;
@@ -307,9 +281,9 @@ TEST(Compression, OneRootColumnNeedsFewSolves) {
   fem::EslSets loads = growing_plate(kGrid, 30, 4, 4);
   loads.sets[7].weight = 0;
   const SmoothDesign design(kGrid, 1);
-  ComplianceEvaluator all(loads, fem::kThinSection,
+  ComplianceEvaluator all(loads, kThinSection,
                           {LoadDefinition::inertia, Support::moving_root, false, 0}, {}, {});
-  ComplianceEvaluator few(loads, fem::kThinSection, {}, {}, {});
+  ComplianceEvaluator few(loads, kThinSection, {}, {}, {});
   EXPECT_LE(few.n_right_hand_sides(), 8);
   ComplianceEvaluator::Value a, b;
   all.evaluate(design.stiffness(0), design.mass(0), a);
@@ -326,11 +300,11 @@ TEST(Compression, ATinyPlate) {
   const VectorXd ones = VectorXd::Ones(2);
   for (Support support : {Support::moving_root, Support::far_end}) {
     ComplianceEvaluator::Value a, b;
-    ComplianceEvaluator(loads, fem::kThinSection, {LoadDefinition::frozen, support, false, 0}, ones,
+    ComplianceEvaluator(loads, kThinSection, {LoadDefinition::frozen, support, false, 0}, ones,
                         ones)
         .evaluate(ones, ones, a);
-    ComplianceEvaluator few(loads, fem::kThinSection,
-                            {LoadDefinition::frozen, support, true, 1e-10}, ones, ones);
+    ComplianceEvaluator few(loads, kThinSection, {LoadDefinition::frozen, support, true, 1e-10},
+                            ones, ones);
     few.evaluate(ones, ones, b);
     EXPECT_NEAR(a.f, b.f, 1e-8 * a.f);
     if (support == Support::far_end) {
@@ -344,10 +318,10 @@ TEST(Compression, OrderAndZeroWeightsDoNotMatter) {
   loads.sets[7].weight = 0;
   const SmoothDesign design(kGrid, 1);
   ComplianceEvaluator::Value sorted, shuffled;
-  ComplianceEvaluator(loads, fem::kThinSection, {}, {}, {})
+  ComplianceEvaluator(loads, kThinSection, {}, {}, {})
       .evaluate(design.stiffness(0), design.mass(0), sorted);
   std::shuffle(loads.sets.begin(), loads.sets.end(), std::mt19937(3));
-  ComplianceEvaluator few(loads, fem::kThinSection, {}, {}, {});
+  ComplianceEvaluator few(loads, kThinSection, {}, {}, {});
   few.evaluate(design.stiffness(0), design.mass(0), shuffled);
   EXPECT_LT(few.n_right_hand_sides(), 10);
   EXPECT_NEAR(sorted.f, shuffled.f, 1e-9 * sorted.f);
@@ -362,7 +336,7 @@ TEST(Compliance, RefusesWithTheReason) {
   const auto message = [&](const fem::EslSets& loads, const ComplianceSettings& settings,
                            const VectorXd& k0) {
     try {
-      ComplianceEvaluator(loads, fem::kThinSection, settings, k0, ones);
+      ComplianceEvaluator(loads, kThinSection, settings, k0, ones);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), Error::Kind::input);
       return std::string(error.what());
@@ -388,7 +362,7 @@ TEST(Compliance, RefusesWithTheReason) {
   const ComplianceSettings frozen{LoadDefinition::frozen, Support::far_end, true, 1e-10};
   EXPECT_NE(message(good, frozen, VectorXd::Ones(3)).find("factors"), std::string::npos);
 
-  ComplianceEvaluator compliance(good, fem::kThinSection, {}, ones, ones);
+  ComplianceEvaluator compliance(good, kThinSection, {}, ones, ones);
   ComplianceEvaluator::Value value;
   EXPECT_THROW(compliance.evaluate(-ones, ones, value), Error);
   VectorXd nan = ones;

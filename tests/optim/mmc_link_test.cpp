@@ -10,6 +10,7 @@
 #include <string>
 
 #include "optim/mmc/loads/compliance_evaluator.h"
+#include "tests/optim/smooth_design.h"
 #include "tests/support/sections.h"
 
 namespace flexmorph::mmc {
@@ -18,32 +19,6 @@ namespace {
 const Grid kLinkGrid{0, -0.05, 0.6, 0.1, 36, 6};
 /// The line of the pins is oblique to the grid.
 const std::array<int, 2> kPins = {kLinkGrid.node(2, 1), kLinkGrid.node(33, 5)};
-
-/// Scale factors as smooth functions of one parameter s: stiffness from 1e-3 to 1, mass from 0.02
-/// to 1.
-struct SmoothLink {
-  VectorXd phase, speed;
-
-  explicit SmoothLink(unsigned seed) : phase(kLinkGrid.n_cells()), speed(kLinkGrid.n_cells()) {
-    std::mt19937 engine(seed);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    for (int c = 0; c < kLinkGrid.n_cells(); ++c) {
-      phase(c) = 2 * std::numbers::pi * uniform(engine);
-      speed(c) = 0.5 + uniform(engine);
-    }
-  }
-  VectorXd stiffness(double s) const {
-    return (1.5 * std::numbers::ln10 * ((phase + s * speed).array().sin() - 1)).exp();
-  }
-  VectorXd d_stiffness(double s) const {
-    return stiffness(s).array() * 1.5 * std::numbers::ln10 * speed.array() *
-           (phase + s * speed).array().cos();
-  }
-  VectorXd mass(double s) const { return 0.51 + 0.49 * (phase + s * speed).array().sin(); }
-  VectorXd d_mass(double s) const {
-    return 0.49 * speed.array() * (phase + s * speed).array().cos();
-  }
-};
 
 /// Returns n loads of a link that rotates and swings, with forces at its pins and a mass between
 /// them. These loads are not balanced.
@@ -96,7 +71,7 @@ TEST_P(EveryLink, TaylorRemainderIsOfSecondOrder) {
   const fem::EslSets loads = swinging_link(12);
   for (const bool compress : {false, true})
     for (const unsigned seed : {1u, 2u, 3u}) {
-      const SmoothLink start(seed + 10), design(seed);
+      const SmoothDesign start(kLinkGrid, seed + 10), design(kLinkGrid, seed);
       ComplianceEvaluator compliance(loads, fem::kThinSection, settings(compress),
                                      start.stiffness(0), start.mass(0));
       ComplianceEvaluator::Value at;
@@ -119,7 +94,7 @@ TEST_P(EveryLink, TaylorRemainderIsOfSecondOrder) {
 // total.
 TEST_P(EveryLink, GradientsAgreeWithDifferences) {
   const fem::EslSets loads = swinging_link(3);
-  const SmoothLink start(5), design(6);
+  const SmoothDesign start(kLinkGrid, 5), design(kLinkGrid, 6);
   ComplianceEvaluator compliance(loads, fem::kThinSection, settings(false), start.stiffness(0),
                                  start.mass(0));
   const VectorXd k = design.stiffness(0), m = design.mass(0);
@@ -161,7 +136,7 @@ TEST_P(EveryLink, GradientsAgreeWithDifferences) {
 
 TEST_P(EveryLink, CompressionChangesNothing) {
   const fem::EslSets loads = swinging_link(40);
-  const SmoothLink start(20), design(1);
+  const SmoothDesign start(kLinkGrid, 20), design(kLinkGrid, 1);
   ComplianceEvaluator all(loads, fem::kThinSection, settings(false), start.stiffness(0),
                           start.mass(0));
   ComplianceEvaluator few(loads, fem::kThinSection, settings(true), start.stiffness(0),
@@ -180,7 +155,7 @@ TEST_P(EveryLink, CompressionChangesNothing) {
 // Hᵀ u = 0: with `pins` the line of the pins does not move across itself; with `floating` the mean
 // translation and rotation, weighted by mass, vanish.
 TEST_P(EveryLink, DisplacementsAreThoseOfTheSupport) {
-  const SmoothLink design(3);
+  const SmoothDesign design(kLinkGrid, 3);
   const VectorXd k = design.stiffness(0), m = design.mass(0);
   ComplianceEvaluator compliance(swinging_link(2), fem::kThinSection, settings(true), k, m);
   const VectorXd u = compliance.displacement(k, m, 1);
