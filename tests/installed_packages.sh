@@ -50,6 +50,6 @@ apt-get purge -y $ours >install.log 2>&1 || { tail install.log && fail "apt-get 
 while read -r file; do
   case $file in *flexmorph*) [ ! -e "$file" ] || fail "$file is left" ;; esac
 done <files
-[ -z "$(find / -xdev -iname '*flexmorph*' ! -path '/root/*' ! -path '/home/*' ! -path '/proc/*')" ] ||
-  fail "files are left: $(find / -xdev -iname '*flexmorph*' ! -path '/root/*' ! -path '/home/*')"
+left=$(find / -xdev -iname '*flexmorph*' ! -user engineer ! -path "$PWD/*")
+[ -z "$left" ] || fail "files are left: $left"
 echo "removed: $(echo "$ours" | tr '\n' ' ')"

@@ -66,7 +66,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
 # Programs that link the static libraries need the libraries of packages.txt, too.
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/packages.txt lines REGEX "^(lib|coinor-lib|nlohmann)[^ ]*-dev")
 list(TRANSFORM lines REPLACE " .*" "")
-list(FILTER lines EXCLUDE REGEX "^pybind11|^libjs-")
+list(REMOVE_ITEM lines libeigen3-dev)  # is among the dependencies
 list(APPEND lines pkgconf)
 list(JOIN lines ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS)
 include(CPack)

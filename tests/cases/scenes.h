@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -38,13 +36,6 @@ inline std::string complaint_of_v01(const Changes& changes) {
     return e.what();
   }
   return "";
-}
-
-/// Returns the largest amount of these values.
-inline double largest(const std::vector<double>& values) {
-  double out = 0;
-  for (const double v : values) out = std::max(out, std::abs(v));
-  return out;
 }
 
 /// Returns the location with which a message must begin: the change that it names, otherwise the

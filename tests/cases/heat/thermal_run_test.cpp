@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/results/series.h"
 #include "cases/run/motion_run.h"
 #include "cases/run/path_run.h"
 #include "tests/cases/scenes.h"
@@ -52,7 +53,7 @@ TEST(FreeBeam, GrowsAsTheClosedFormSays) {
     EXPECT_NEAR(r.table.at("beam.end_rx").back(), 1 + 1e-4 * rise, 1e-9);
     EXPECT_NEAR(r.table.at("beam.end_ry").back(), 1 + 1e-4 * rise, 1e-9);
     EXPECT_NEAR(fastest / (3.03 * std::pow(1e-4 * rise * 32 / 9, 2)), 1, 1e-4);
-    EXPECT_LE(largest(r.table.at("beam.max_elastic_strain")), 1e-8);
+    EXPECT_LE(largest_size(r.table.at("beam.max_elastic_strain")), 1e-8);
   }
 }
 
@@ -61,7 +62,7 @@ TEST(FreeBeam, WithoutThermalForceStrainsAccelerateIt) {
   const MotionRecord r = motion_of("free_beam_heated", {"body.heat.force=false"});
   // quasi-static strain at the start
   const double alone = 7200 / 8.0 * 1e-4 * 200 * 12 / 0.25 / 7e8;
-  const double strain = largest(r.table.at("beam.max_elastic_strain"));
+  const double strain = largest_size(r.table.at("beam.max_elastic_strain"));
   EXPECT_GT(strain, 0.5 * alone);
   // a factor of 2 for a sudden load; strains vary linearly across the element
   EXPECT_LT(strain, 3 * alone);
@@ -92,7 +93,7 @@ TEST(Clamp, PartialIsFreeOfStressAndFullTapers) {
   const PathRecord partial = path_of("clamped_expansion");
   EXPECT_NEAR(partial.table.at("beam.end_ux").back(), 0.01, 1e-11);
   EXPECT_NEAR(partial.table.at("beam.end_uy").back(), 0, 1e-11);
-  EXPECT_LE(largest(partial.table.at("beam.max_elastic_strain")), 1e-12);
+  EXPECT_LE(largest_size(partial.table.at("beam.max_elastic_strain")), 1e-12);
   // The held section is too small by e = (1 - s⁻²)/2, and Poisson's effect makes the beam longer by
   // s ν e λ, λ = h √(G/(12E)). In the mode "full" the axis may not stretch at the clamp, either,
   // which makes the beam shorter by less than the expansion of the first element.
@@ -202,7 +203,7 @@ TEST(HotBeam, ArcGrowsWithoutStress) {
               {"body.arc=1.5707963267948966", "body.heat.rise=100", "static.grows=temperatures",
                "load=[]", "joint.1.components=[\"y\"]", "body.elements=6"});
   const double R = 2 / std::numbers::pi;
-  EXPECT_LE(largest(r.table.at("beam.max_elastic_strain")), 1e-11);
+  EXPECT_LE(largest_size(r.table.at("beam.max_elastic_strain")), 1e-11);
   // The root is held and the end keeps its height, therefore the expanded arc is rotated about the
   // root until its end is at this height.
   const double far = std::sqrt(2.0) * R, s = 1.008;

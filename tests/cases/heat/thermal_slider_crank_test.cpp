@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/results/series.h"
 #include "cases/run/motion_run.h"
 #include "tests/cases/scenes.h"
 #include "tests/support/rates.h"
@@ -107,7 +108,7 @@ TEST(SliderCrank, ColdRodFollowsTheSmallDeflectionModel) {
     const std::vector<double>& w = r.table.at("rod.midpoint_deflection");
     const std::vector<double> expected = SmallDeflections(bending, 7200 * h * b).middle(1e-3, 2000);
     ASSERT_EQ(w.size(), 1001u);
-    const double size = largest(expected);
+    const double size = largest_size(expected);
     EXPECT_GT(size, 1e-3);
     for (size_t k = 0; k < w.size(); ++k)
       ASSERT_NEAR(w[k], expected[2 * k], 0.03 * size) << model << " at " << r.time()[k];
@@ -122,9 +123,9 @@ TEST(SliderCrank, HeatMovesTheSliderAndLeavesNoStress) {
                      hot = run({"body.heat.rise=200", "time.step=2e-3"});
   const double shift = hot.table.at("rod.slider_x").back() - cold.table.at("rod.slider_x").back();
   EXPECT_NEAR(shift, kAlpha * 200 * kRod, 5e-5);
-  const double strain = largest(cold.table.at("rod.max_elastic_strain"));
+  const double strain = largest_size(cold.table.at("rod.max_elastic_strain"));
   // The hot rod is longer by α ΔT, and strains refer to its length.
-  EXPECT_NEAR(largest(hot.table.at("rod.max_elastic_strain")) / strain, 1, 2 * kAlpha * 200);
+  EXPECT_NEAR(largest_size(hot.table.at("rod.max_elastic_strain")) / strain, 1, 2 * kAlpha * 200);
   EXPECT_LT(strain, 0.1 * kAlpha * 200);  // a held rod would have the strain α ΔT
 }
 
@@ -167,8 +168,8 @@ TEST(SliderCrank, StepOfTheTemperatureRingsAtTheAxialFrequency) {
   sudden.push_back("body.heat.profile=step");
   const MotionRecord gradual = run(fine), step = run(sudden);
   const double a = kAlpha * 50;
-  EXPECT_GT(largest(step.table.at("rod.max_elastic_strain")), 0.9 * a);
-  EXPECT_LT(largest(gradual.table.at("rod.max_elastic_strain")), 0.3 * a);
+  EXPECT_GT(largest_size(step.table.at("rod.max_elastic_strain")), 0.9 * a);
+  EXPECT_LT(largest_size(gradual.table.at("rod.max_elastic_strain")), 0.3 * a);
   // Counts how often the position of the slider, relative to the gradually heated rod, crosses its
   // mean.
   std::vector<double> u;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cases/results/series.h"
 #include "io/drawings/exports.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
@@ -14,12 +15,6 @@
 
 namespace flexmorph::test {
 namespace {
-
-double largest(const std::vector<double>& values) {
-  double out = 0;
-  for (const double v : values) out = std::max(out, std::abs(v));
-  return out;
-}
 
 /// Integrates the column by the trapezoidal rule.
 double strain_integral(const io::CsvTable& motion) {
@@ -60,15 +55,15 @@ TEST(CellsRun, CyclesAndDesignsAreJudgedOnCells) {
   EXPECT_NEAR(motion["scene_mesh_strain_energy_integral"].get<double>(), strain_integral(coarse),
               1e-12 * integral);
   const json& heavy = run["results"][0];
-  const double amplitude = largest(on_cells.numbers("heavy.tip_deflection"));
+  const double amplitude = cases::largest_size(on_cells.numbers("heavy.tip_deflection"));
   EXPECT_EQ(heavy["dynamic_amplitude"].get<double>(), amplitude);
   EXPECT_EQ(heavy["scene_mesh_amplitude"].get<double>(),
-            largest(coarse.numbers("heavy.tip_deflection")));
+            cases::largest_size(coarse.numbers("heavy.tip_deflection")));
   EXPECT_NE(heavy["dynamic_amplitude"], heavy["scene_mesh_amplitude"]);
   EXPECT_LT(heavy["load_difference"]["geometric"].get<double>(), 1);
   EXPECT_EQ(run["expect"]["amplitude"]["found"].get<double>(), amplitude);
   EXPECT_EQ(run["expect"]["energy.strain.largest"]["found"].get<double>(),
-            largest(on_cells.numbers("energy.strain")));
+            cases::largest_size(on_cells.numbers("energy.strain")));
   EXPECT_FALSE(std::filesystem::exists(folder + "/motion_on_cells.csv"));
   // The report contains the picture of the verification.
   const std::string picture = contents_of(folder + "/plots/deflection_verified.svg");

@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iomanip>
 #include <numbers>
-#include <sstream>
 
+#include "cases/results/series.h"
 #include "io/tables.h"
 #include "tests/cases/program.h"
 
@@ -51,12 +50,6 @@ density = 7800.0
 
 const char* const kFlow = "[body.flow]\nspeed = 0.3\nmax_length = 0.15\nmin_length = 0.02\n";
 
-double largest(const std::vector<double>& x) {
-  double out = 0;
-  for (const double each : x) out = std::max(out, std::abs(each));
-  return out;
-}
-
 class PlatesInAHub : public ::testing::TestWithParam<const char*> {};
 
 // Two plates half a turn apart both move as a single plate; the hub has twice the moment and no
@@ -72,8 +65,8 @@ TEST_P(PlatesInAHub, HalfATurnApartMoveAsOne) {
              other = two.numbers("other.tip_deflection"), m = one.numbers("shaft.moment"),
              both = two.numbers("shaft.moment"), x = two.numbers("shaft.force_x"),
              y = two.numbers("shaft.force_y");
-  const double bend = largest(tip), most = largest(m),
-               force = std::max(largest(one.numbers("shaft.force_x")), 1.0);
+  const double bend = cases::largest_size(tip), most = cases::largest_size(m),
+               force = std::max(cases::largest_size(one.numbers("shaft.force_x")), 1.0);
   EXPECT_GT(bend, 1e-3);
   ASSERT_EQ(tip.size(), other.size());
   for (size_t i = 0; i < tip.size(); ++i) {
@@ -94,7 +87,8 @@ TEST(HubAngle, IsThatOfTheHub) {
   for (const char* column : {"arm.tip_deflection", "shaft.force_x", "shaft.moment"}) {
     const auto a = weld.numbers(column), b = turned.numbers(column);
     ASSERT_EQ(a.size(), b.size());
-    for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-6 * largest(a)) << column;
+    for (size_t i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(a[i], b[i], 1e-6 * cases::largest_size(a)) << column;
   }
 }
 

@@ -5,10 +5,8 @@
 
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <numbers>
-#include <sstream>
 
 #include "cases/assembly/build.h"
 #include "io/tables.h"
