@@ -84,13 +84,13 @@ const Key& kChangeTolerance =
         .otherwise(kSettings.change_tolerance)
         .description(
             "Change of the design below which the optimizer stops after 3 iterations; 0: never.");
-const Key& kStagnationIterations =
-    io::key("optimizer", "stagnation_iterations")
-        .formerly("rest_iterations")
-        .integer("a number of iterations", 0, 1'000'000)
-        .otherwise(kSettings.rest.rows)
-        .description(
-            "Number of iterations over which the stagnation of the objective is tested; 0: never.");
+const Key& kStagnationIterations = io::key("optimizer", "stagnation_iterations")
+                                       .formerly("rest_iterations")
+                                       .integer("a number of iterations", 0, 1'000'000)
+                                       .otherwise(kSettings.rest.rows)
+                                       .description(
+                                           "Iterations over which stagnation is tested; 0: neither "
+                                           "it nor a plateau ends a stage.");
 const Key& kStagnationObjective = io::key("optimizer", "stagnation_objective")
                                       .formerly("rest_objective")
                                       .number(not_negative("a fraction"))

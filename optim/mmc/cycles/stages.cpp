@@ -41,7 +41,7 @@ StageResult StageRunner::optimize(const StageResult& from, std::vector<Formulati
   most_left_with_widths_ = share.widths ? most_left_ : share.later_with_widths;
   optim::Settings settings = settings_.optimizer;
   settings.max_iterations = share.iterations;
-  settings.plateau = true;
+  settings.plateau = settings.rest.rows > 0;
   if (share.gentle) begin_gently(settings);
   settings.max_evaluations = share.solves > 0 ? share.solves - evaluations_ : 0;
   CombinedProblem whole(parts_, from.designs, formulations);
