@@ -233,8 +233,10 @@ bool is_unquoted_number(const std::string& value) {
 }  // namespace
 
 CaseNode parse_option(const std::string& value, const std::string& option) {
-  // A word may be given without quotes, because shells remove them.
-  const bool word = is_bare_key(value) && std::isalpha(static_cast<unsigned char>(value[0])) &&
+  // A word, such as plate.tip_deflection, may be given without quotes, because shells remove them.
+  std::string joined = value;
+  std::erase(joined, '.');
+  const bool word = is_bare_key(joined) && std::isalpha(static_cast<unsigned char>(value[0])) &&
                     value != "true" && value != "false" && value != "inf" && value != "nan";
   std::string text = "value = ";
   text += word ? in_quotes(value) : value;

@@ -15,7 +15,8 @@ std::string read_text(const std::string& path);
 /// @throws Error (input) "<file>:<line>:<column>: not TOML: <reason>"
 CaseNode parse_case(const std::string& text, const std::string& file);
 
-/// Parses the VALUE of a command line option: TOML, or a bare word, which is a string.
+/// Parses the VALUE of a command line option: TOML, or a bare word with or without dots, which is a
+/// string.
 /// @throws Error (input) naming the option.
 CaseNode parse_option(const std::string& value, const std::string& option);
 

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "io/case_files/case_document.h"
+#include "io/case_files/case_parser.h"
 #include "tests/io/scratch.h"
 
 namespace flexmorph::io {
@@ -82,6 +83,13 @@ Table plate(const Table& root) { return root.tables(kBody).at(0); }
 Table arm(const Table& root) { return root.tables(kBody).at(1); }
 void touch_all(const Table& table) {
   for (const std::string& key : table.keys()) table.has(quick("", key));
+}
+
+TEST_F(CaseFiles, OptionsMayOmitTheQuotesOfAWord) {
+  for (const char* word : {"motion", "plate.tip_deflection", "energy.strain", "drive-2.csv"})
+    EXPECT_EQ(parse_option(word, "--set a").text, word);
+  for (const char* wrong : {"a b", "a,b", "..", "a=b"})
+    EXPECT_THROW(parse_option(wrong, "--set a"), Error) << wrong;
 }
 
 TEST_F(CaseFiles, ValuesArriveAsWritten) {
