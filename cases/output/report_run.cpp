@@ -34,6 +34,7 @@ constexpr KnownFile kKnownFiles[] = {
     {"design_esl", ".svg", "outline before the corrected cycles"},
     {"design/iterations", ".pvd", "design of every iteration, for ParaView"},
     {"design/components", ".pvd", "components of every iteration, for ParaView"},
+    {"design/fields", ".pvd", "displacement and energy of some iterations, for ParaView"},
     {"motion/motion", ".pvd", "moving bodies, for ParaView"},
     {"history", ".csv", "a row per design iteration"},
     {"motion_uniform", ".csv", "the motion with uniform material"},
@@ -125,12 +126,12 @@ PageSection settings_section(const Scene& scene) {
   std::vector<std::vector<std::string>> rows;
   for (const io::Setting& each : scene.file->settings())
     rows.push_back({term(each.path, each.sentence), escaped(each.value), escaped(each.fallback),
-                    each.is_option ? "--set" : ""});
+                    each.is_option ? "--set" : "case file"});
   if (!rows.empty())
     out.html = sortable_table({{"key", "", ""},
                                {"value", "", ""},
                                {"default", "", "Empty if the key has no default."},
-                               {"given by", "", "Empty for values of the case file."}},
+                               {"given by", "", ""}},
                               rows);
   return out;
 }

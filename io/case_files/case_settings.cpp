@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdlib>
 
 #include "io/case_files/case_document.h"
@@ -5,17 +6,42 @@
 namespace flexmorph::io {
 namespace {
 
-std::string without_spaces(std::string text) {
+/// Returns a text without blanks.
+std::string without_blanks(std::string text) {
   std::erase(text, ' ');
   return text;
 }
 
-/// Tells whether a value of the file is the default of its key.
+/// Returns the entries of a list without blanks: "[0,[1,2]]" has "0" and "[1,2]".
+std::vector<std::string> entries_of(const std::string& list) {
+  std::vector<std::string> out;
+  int depth = 0;
+  for (const char c : list) {
+    if (c == ']') {
+      if (depth > 1) out.back() += c;
+      --depth;
+      continue;
+    }
+    if (depth == 1 && (out.empty() || c == ',')) out.emplace_back();
+    if (depth > 1 || (depth == 1 && c != ',')) out.back() += c;
+    if (c == '[') ++depth;
+  }
+  return out;
+}
+
+/// Tells whether a value of the file is the default of its key, which has no blanks.
 bool is_fallback(const CaseNode& node, const std::string& fallback) {
-  if (node.kind == CaseNode::Kind::number || node.kind == CaseNode::Kind::integer)
-    return node.number == std::strtod(fallback.c_str(), nullptr);
-  if (node.kind == CaseNode::Kind::text) return "\"" + node.text + "\"" == fallback;
-  return without_spaces(node.shown) == without_spaces(fallback);
+  if (node.kind == CaseNode::Kind::number || node.kind == CaseNode::Kind::integer) {
+    char* end = nullptr;
+    const double number = std::strtod(fallback.c_str(), &end);
+    return end != fallback.c_str() && *end == '\0' && node.number == number;
+  }
+  if (node.kind == CaseNode::Kind::list && fallback.starts_with('[')) {
+    const std::vector<std::string> all = entries_of(fallback);
+    return std::ranges::equal(node.entries, all, is_fallback);
+  }
+  const bool is_text = node.kind == CaseNode::Kind::text;
+  return without_blanks(is_text ? "\"" + node.text + "\"" : node.shown) == fallback;
 }
 
 void add_settings(const CaseNode& node, const std::string& path, std::vector<Setting>& out);
@@ -27,7 +53,8 @@ void add_table(const CaseNode& table, const std::string& path, std::vector<Setti
       add_settings(child, full, out);
     for (const CaseNote& note : table.notes) {
       if (note.key != child.key || child.kind == CaseNode::Kind::table) continue;
-      const bool differs = !note.fallback.empty() && !is_fallback(child, note.fallback);
+      const bool differs =
+          !note.fallback.empty() && !is_fallback(child, without_blanks(note.fallback));
       if (differs || child.is_option)
         out.push_back({full, child.shown, note.fallback, note.sentence, child.is_option});
     }

@@ -109,6 +109,27 @@ TEST_F(Keys, ReadersTakeTheFileThenTheReaderThenTheDeclaration) {
   EXPECT_EQ(read.root().table(kConstants).number(kConstant.named("speed")), 2);
 }
 
+// A value that is written in another way than the default is the default.
+TEST_F(Keys, SettingsAreValuesThatDifferFromTheirDefaults) {
+  const CaseFile given = file({}, R"(title = 'none'
+[time]
+end = 1
+step = 2.5e-1
+size = [1,  2]
+[[body]]
+angle = 0.5
+size = [1, 3]
+[output]
+every = 4
+[constants]
+)");
+  read(given.root());
+  given.root().table(kTime).integers(kSize);
+  std::vector<std::string> found;
+  for (const Setting& each : given.settings()) found.push_back(each.path + " = " + each.value);
+  EXPECT_EQ(found, (std::vector<std::string>{"body.size = [1, 3]", "output.every = 4"}));
+}
+
 TEST_F(Keys, MessagesAreThoseOfTheDeclaration) {
   const auto time = [](const Key& key) {
     return [key](const Table& root) { root.table(kTime).number(key); };
