@@ -33,18 +33,21 @@ double points_of(const Body& body) {
   return 49 + n * n;
 }
 
-// Rates of one core [operations/s] of motions and of factorizations; seconds per frame and per
-// point of a frame, per cell of a design and iteration; seconds of the start, plots and the report.
-constexpr double kMotionRate = 6.5e9, kFactorRate = 1.2e10, kFrameSeconds = 1e-3,
-                 kPointSeconds = 2e-7;
+// Rates of one core [operations/s] of motions, of motions on cells, and of factorizations; seconds
+// per frame and per point of a frame, per cell of a design and iteration; seconds of the start,
+// plots and the report.
+constexpr double kMotionRate = 6.5e9, kCellsRate = 3.8e9, kFactorRate = 1.2e10,
+                 kFrameSeconds = 1e-3, kPointSeconds = 3e-6;
 // Time of a motion on cells with its adjoint computation, divided by the time of the motion.
 constexpr double kGradient = 3;
+// Seconds per cell of an equivalent static load, which is made while the mechanism moves.
+constexpr double kLoadCellSeconds = 2.5e-6;
 constexpr double kCellSeconds = 1.5e-6, kStart = 0.25;
 // Seconds per component: of the exact outline in an iteration, of a crisp design, and of the files
 // of the part. Seconds of the constraints of widths in an iteration for n components, divided by
 // n^1.5. Seconds per cell of a frame of a design. Seconds of the verification of an outline:
 // constant, per component, and per component and load.
-constexpr double kOutlineSeconds = 5e-4, kCrispSeconds = 6e-3, kExportSeconds = 0.1,
+constexpr double kOutlineSeconds = 5e-4, kCrispSeconds = 6e-3, kExportSeconds = 0.015,
                  kWidthsSeconds = 2.5e-4, kFrameCellSeconds = 1e-6, kVerifiedSeconds = 0.3,
                  kVerifiedComponent = 0.02, kVerifiedLoad = 2e-4;
 
@@ -126,7 +129,7 @@ double cells_seconds(const Scene& scene, double steps, int parts, double cell = 
     step += along * across * (kForces * each.force + tangents * each.tangent);
     step += along * across * body.dim() * band * (tangents * kFactor * band + 4 * kSolutions);
   }
-  return steps * step / kMotionRate;
+  return steps * step / kCellsRate;
 }
 
 /// Returns the CPU time of one motion on cells with its adjoint computation [s].
@@ -158,6 +161,13 @@ double design_seconds(const Scene& scene) {
     out += mean * scene.optimizer.max_iterations * scene.designs[i].starts;
   }
   return out;
+}
+
+/// Returns the CPU time of the equivalent static loads of all designs in one motion [s].
+double load_seconds(const Scene& scene) {
+  double cells = 0;
+  for (const BodyDesign& d : scene.designs) cells += 1.0 * d.grid.nx * d.grid.ny;
+  return scene.esl ? scene.esl->count(scene.time.end) * cells * kLoadCellSeconds : 0;
 }
 
 /// Returns the CPU time of the files of all parts: smooth outlines, drawings and solids [s].
@@ -213,11 +223,15 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
   if (scene.designs.empty())
     return {
         {.name = scene.statics ? "statics" : "motion",
+         .kind = "motion",
          .seconds = motion + frames,
          .may_end_early = scene.statics && scene.statics->path != fem::StaticSettings::Path::load}};
-  const PhaseCost design{.name = "design", .seconds = design_seconds(scene), .may_end_early = true};
-  const PhaseCost outlines{.name = "verification of outlines", .seconds = outline_seconds(scene)};
-  const PhaseCost exports{.name = "files of the parts", .seconds = export_seconds(scene)};
+  const PhaseCost design{
+      .name = "design", .kind = "design", .seconds = design_seconds(scene), .may_end_early = true};
+  const PhaseCost outlines{
+      .name = "verification of outlines", .kind = "outlines", .seconds = outline_seconds(scene)};
+  const PhaseCost exports{
+      .name = "files of the parts", .kind = "files", .seconds = export_seconds(scene)};
   if (scene.domain) return {design, exports, outlines};
 
   const bool on_cells = scene.verifies_on_cells();
@@ -231,29 +245,39 @@ std::vector<PhaseCost> phase_costs(const Scene& scene, const Mechanism* mechanis
                 : std::pow(scene.verify->refine, 2) * motion * steps / resources.steps;
   }
   const int cycles = scene.optimizer.max_iterations > 0 ? scene.cycle.max_cycles : 1;
-  std::vector<PhaseCost> out;
+  const char* const kind_of_finer = on_cells ? "motion on cells" : "motion";
+  const PhaseCost loaded{
+      .name = "motion", .kind = "motion", .seconds = motion + load_seconds(scene)};
+  std::vector<PhaseCost> out = {loaded};
   for (int cycle = 1; cycle <= cycles; ++cycle) {
-    out.push_back({.name = "motion", .cycle = cycle, .seconds = motion});
-    for (const PhaseCost& each : {design, exports}) {
-      out.push_back(each);
-      out.back().cycle = cycle;
-    }
-    if (on_cells && cycles > 1)
-      out.push_back({.name = "motion on cells", .cycle = cycle, .seconds = finer});
+    const auto add = [&](PhaseCost phase) {
+      phase.cycle = cycle;
+      out.push_back(phase);
+    };
+    add(design);
+    add(exports);
+    if (cycles == 1) break;
+    if (on_cells) add({.name = "motion on cells", .kind = kind_of_finer, .seconds = finer});
+    // The loads of the motion with the designs decide whether another cycle follows.
+    if (!on_cells || cycle < cycles) add(loaded);
   }
   if (scene.cycle.correction.kind != mmc::Correction::none)
-    out.push_back(
-        {.name = "corrected cycles", .seconds = correction_seconds(scene), .may_end_early = true});
+    out.push_back({.name = "corrected cycles",
+                   .kind = "gradients",
+                   .seconds = correction_seconds(scene),
+                   .may_end_early = true});
   out.push_back(outlines);
-  const auto add = [&](const char* name, double seconds) {
-    out.push_back({.name = name, .seconds = seconds, .group = 1});
+  const auto add = [&](const char* name, const char* kind, double seconds) {
+    out.push_back({.name = name, .kind = kind, .seconds = seconds, .group = 1});
   };
-  add("motion with the design", motion + frames);
-  add("motion with uniform material", motion);
-  if (scene.verify) add("verification with uniform material", finer);
-  if (scene.verify && !(on_cells && cycles > 1)) add("verification with the design", finer);
+  add("motion with the design", "motion", motion + frames);
+  add("motion with uniform material", "motion", motion);
+  if (scene.verify) add("verification with uniform material", kind_of_finer, finer);
+  if (scene.verify && !(on_cells && cycles > 1))
+    add("verification with the design", kind_of_finer, finer);
   if (scene.certify)
     out.push_back({.name = "certificate",
+                   .kind = "gradients",
                    .seconds = gradient_seconds(scene, scene.certify->cell, scene.certify->step)});
   return out;
 }

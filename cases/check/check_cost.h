@@ -23,9 +23,10 @@ StepOperations step_operations(const Scene& scene, const Mechanism& mechanism);
 
 /// The expected cost of one phase of a run.
 struct PhaseCost {
-  std::string name;            ///< Name that the run shows: "design", "motion on cells", ...
-  int cycle = 0;               ///< Number of the cycle it belongs to, from 1; 0: no cycle.
-  double seconds = 0;          ///< Expected CPU time [s].
+  std::string name;    ///< Name that the run shows: "design", "motion on cells", ...
+  std::string kind;    ///< Kind of computation: one kind has one ratio of true to expected time.
+  int cycle = 0;       ///< Number of the cycle it belongs to, from 1; 0: no cycle.
+  double seconds = 0;  ///< Expected CPU time [s].
   bool may_end_early = false;  ///< True for iterations, whose number is an upper bound.
   int group = 0;               ///< Phases with the same group (not 0) may run at the same time.
 };

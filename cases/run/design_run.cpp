@@ -198,9 +198,10 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
   if (design_.verdicts.empty()) return;
   design_.outcomes = best;
   loads = std::move(cycle_loads.best);
-  if (run_.folder)
-    for (size_t i = 0; i < best.size(); ++i)
-      run_.folder->write_design(design_.problems[i], best[i]);
+  if (!run_.folder) return;
+  run_.progress.begin("files of the best designs");
+  for (size_t i = 0; i < best.size(); ++i)
+    run_.folder->write_design(design_.problems[i], best[i]);
 }
 
 void DesignRun::design_at_rest() {

@@ -1,6 +1,7 @@
 #include "cases/run/motions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "fem/dynamics/parallel_jobs.h"
@@ -32,11 +33,44 @@ std::vector<fem::ScaleFactors> final_factors(std::span<const mmc::BodyProblem> p
   return out;
 }
 
-/// Sets the mesh and the time step of a verification in a request.
-void set_verified(const Verify& verify, MotionRequest& request) {
+/// Returns a function of the time that tells which part of the work of a motion on cells is done, 0
+/// to 1: the cost of a step grows with the number of cells to the power of 1.38 (tests/README.md,
+/// Dynamics).
+std::function<double(double)> work_on_cells(const Scene& scene) {
+  constexpr int kSamples = 200;
+  constexpr double kPower = 1.38;
+  const double end = scene.time.end;
+  std::vector<double> sums = {0};
+  for (int k = 0; k < kSamples; ++k) {
+    double cost = 0;
+    for (const BodyDesign& d : scene.designs)
+      cost += std::pow(scene.body(d.body).length_at(end * (k + 0.5) / kSamples), kPower);
+    sums.push_back(sums.back() + cost);
+  }
+  return [sums, end](double t) {
+    const double at = std::clamp(t / end, 0.0, 1.0) * kSamples;
+    const auto k = std::min(static_cast<size_t>(at), sums.size() - 2);
+    return std::lerp(sums[k], sums[k + 1], at - static_cast<double>(k)) / sums.back();
+  };
+}
+
+/// Reports to the display of a run how far a motion is.
+/// @param part  part of the work that is done at a time, 0 to 1
+std::function<void(double)> reporter(const RunContext& run, const std::string& phase,
+                                     std::function<double(double)> part) {
+  return [&run, phase, part = std::move(part), end = run.scene().time.end](double t) {
+    run.progress.way(phase, part(t),
+                     "t = " + io::to_text(t, 4) + " of " + io::to_text(end, 4) + " s");
+  };
+}
+
+/// Sets the mesh and the time step of the verification in a request.
+void set_verified(const RunContext& run, MotionRequest& request) {
+  const Verify& verify = *run.scene().verify;
   request.mesh = {verify.mesh, verify.refine, verify.cells};
   request.step = verify.step;
   request.balance = false;
+  if (verify.cells > 0) request.reached = reporter(run, request.phase, work_on_cells(run.scene()));
 }
 
 /// Returns the number by which cycles are compared; smaller is better.
@@ -72,10 +106,8 @@ MotionRequest resumable_request(const RunContext& run, const std::string& phase,
   out.phase = phase;
   out.table = table;
   out.keep_running = run.keep_running;
-  out.reached = [&run, phase, end = run.scene().time.end](double t) {
-    run.progress.way(phase, t / end,
-                     "t = " + io::to_text(t, 4) + " of " + io::to_text(end, 4) + " s");
-  };
+  const double end = run.scene().time.end;
+  out.reached = reporter(run, phase, [end](double t) { return t / end; });
   out.checkpoint = table.substr(0, table.rfind('.')) + kCheckpoint;
   out.resume = run.resume;
   out.resumed = [&run](const std::string& words) { run.progress.say(words); };
@@ -87,7 +119,9 @@ MotionRequest result_request(const RunContext& run, const std::string& phase) {
   MotionRequest out = resumable_request(run, phase, "motion.csv");
   const Output& output = run.scene().output;
   out.frames_every = output.vtk ? output.motion_every : 0;
-  out.snapshots = run.scene().is_mechanism() && output.plots ? kSnapshots : 0;
+  const bool in_space =
+      std::ranges::any_of(run.scene().bodies, [](const Body& body) { return body.in_space(); });
+  out.snapshots = output.plots && !in_space ? kSnapshots : 0;
   out.animated = output.plots ? kAnimatedFrames : 0;
   out.condition = run.condition;
   return out;
@@ -147,7 +181,7 @@ double CycleMotions::measure_on_cells(std::span<const fem::ScaleFactors> factors
   MotionRequest request = resumable_request(run_, "motion on cells", kOnCells);
   request.checkpoint = "motion_on_cells_" + io::to_text(++n_assessed_) + kCheckpoint;
   request.factors.assign(factors.begin(), factors.end());
-  set_verified(*run_.scene().verify, request);
+  set_verified(run_, request);
   last_on_cells_ = run_one(request).record;
   return measure_of(run_.scene().cycle, *last_on_cells_);
 }
@@ -217,13 +251,13 @@ std::vector<fem::EslSets> assess_by_motion(const RunContext& run,
       MotionRequest request = resumable_request(run, "verification with uniform material",
                                                 "motion_verified_uniform.csv");
       request.factors = uniform_factors(problems);
-      set_verified(*scene.verify, request);
+      set_verified(run, request);
       all.push_back({finer, request, &motions.verified_uniform});
     }
     if (!motions.verified) {
       MotionRequest designed = resumable_request(run, "verification with the design", kVerified);
       designed.factors = final_factors(problems);
-      set_verified(*scene.verify, designed);
+      set_verified(run, designed);
       all.push_back({finer, designed, &motions.verified});
     }
   }

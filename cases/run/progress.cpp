@@ -79,8 +79,15 @@ void Progress::begin(const std::string& phase) {
 }
 
 void Progress::watch(std::function<void(const std::string&)> watcher) {
-  const std::lock_guard guard(lock_);
+  const std::lock_guard guard(watching_);
   watcher_ = std::move(watcher);
+}
+
+/// Calls the watcher unless another thread is calling it. The lock of the display is not held,
+/// because a watcher may take seconds, in which the line is shown again.
+void Progress::call_watcher(const std::string& text) {
+  const std::unique_lock guard(watching_, std::try_to_lock);
+  if (guard.owns_lock()) watcher_(text);
 }
 
 void Progress::plan(WorkPlan phases) {
@@ -101,7 +108,7 @@ std::string Progress::with_time(const std::string& text) const {
 }
 
 void Progress::iteration(const mmc::IterationReport& r) {
-  const std::lock_guard guard(lock_);
+  std::unique_lock guard(lock_);
   where_.phase = "design";
   where_.body = r.problem.body;
   where_.cycle = r.cycle;
@@ -117,19 +124,22 @@ void Progress::iteration(const mmc::IterationReport& r) {
     tail += ", compliance " + formatted("%.5g", r.state.compliance());
   tail += ", volume fraction " + formatted("%.4f", r.state.volume()) + ", KKT residual " +
           formatted("%.1e", r.iterate.kkt);
-  watcher_(with_time(head));
   line(head, tail, r.iteration == 1 || r.iteration % 25 == 0);
+  const std::string text = with_time(head);
+  guard.unlock();
+  call_watcher(text);
 }
 
 void Progress::way(const std::string& phase, double part, const std::string& words,
                    bool may_end_early) {
-  const std::lock_guard guard(lock_);
+  std::unique_lock guard(lock_);
   plan_.advance(phase, part, {may_end_early ? 0 : 1 - part, 1 - part}, seconds());
-  watcher_(with_time(phase + ": " + words));
-  if (quiet_) return;
   const double pause = std::chrono::duration<double>(Clock::now() - shown_).count();
-  if (pause < (terminal_ ? kTerminal : kElsewhere)) return;
-  line(phase + ": " + words, "", true);
+  if (!quiet_ && pause >= (terminal_ ? kTerminal : kElsewhere))
+    line(phase + ": " + words, "", true);
+  const std::string text = with_time(phase + ": " + words);
+  guard.unlock();
+  call_watcher(text);
 }
 
 Failure Progress::where() const {

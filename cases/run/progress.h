@@ -54,6 +54,7 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
+  void call_watcher(const std::string& text);
   // The lock has to be held by the callers of these functions.
   double seconds() const;
   std::string with_time(const std::string& text) const;
@@ -63,6 +64,7 @@ class Progress {
   void keep_showing(const std::stop_token& stop);
 
   mutable std::mutex lock_;
+  std::mutex watching_;  // held while the watcher is called or replaced
   bool quiet_, terminal_, open_ = false;
   std::function<void(const std::string&)> told_;  // empty: messages are printed
   std::function<void(const std::string&)> watcher_ = [](const std::string&) {};

@@ -8,11 +8,16 @@
 namespace flexmorph::cases {
 namespace {
 
-// Factors between an expected time and the ends of its range: of a phase whose name has not run on
-// this machine, before and after other phases have run, and of a phase whose name has run.
-constexpr double kUnmeasured = 1.7, kOthersMeasured = 1.5, kMeasured = 1.2;
+// Factors between an expected time and the ends of its range: of a phase of a kind that has not run
+// on this machine, of a phase whose kind has run, and of a phase whose name has run.
+constexpr double kUnmeasured = 1.7, kKindMeasured = 1.5, kMeasured = 1.2;
+// Limits of the speed that other kinds of phases suggest.
+constexpr double kSlowest = 2;
 // Largest ratio of both ends of the expected end of the run while cycles are open.
 constexpr double kWidest = 3;
+// Part of a phase from which on the range of its duration is at most this factor to both sides of
+// its middle [-].
+constexpr double kHalf = 0.5, kHalfSpread = 1.1;
 // A phase tells its own speed from this time and this fraction on [s, -].
 constexpr double kOwnSpeedAfter = 0.5, kOwnSpeedFrom = 0.02;
 
@@ -21,6 +26,10 @@ constexpr double kOwnSpeedAfter = 0.5, kOwnSpeedFrom = 0.02;
 WorkPlan::WorkPlan(std::vector<PhaseCost> phases, std::vector<IterationCost> designs, int threads)
     : designs_(std::move(designs)), threads_(std::max(1, threads)) {
   for (PhaseCost& phase : phases) entries_.push_back({std::move(phase)});
+}
+
+bool WorkPlan::Entry::tells_its_speed(double now) const {
+  return is_running() && now - begin > kOwnSpeedAfter && done > kOwnSpeedFrom * (done + units.most);
 }
 
 WorkPlan::Entry* WorkPlan::running(const std::string& name) {
@@ -36,7 +45,7 @@ void WorkPlan::begin(const std::string& name, double now) {
   for (Entry& e : entries_) {
     if (&e == &*next) break;
     // Motions of one group may run at the same time.
-    const bool beside = e.cost.group > 0 && e.cost.group == next->cost.group;
+    const bool beside = threads_ > 1 && e.cost.group > 0 && e.cost.group == next->cost.group;
     if (e.is_over() || (beside && !e.is_running())) continue;
     if (beside && e.units.most > 0) continue;
     if (e.begin < 0) e.begin = now;
@@ -52,6 +61,10 @@ void WorkPlan::advance(const std::string& name, double done, SecondsRange left, 
     entry = running(name);
   }
   if (!entry) return;
+  if (entry->first_time < 0) {
+    entry->first_time = now;
+    entry->first_done = done;
+  }
   entry->done = done;
   entry->units = left;
 }
@@ -77,40 +90,54 @@ void WorkPlan::iterate(const std::string& body, const Iterations& now_at, double
   advance("design", done, {kExpectedPart * left, left}, now);
 }
 
-/// Returns the speed of the phases with the name of `cost` or, before one has run, of all phases.
-WorkPlan::Speed WorkPlan::speed_of(const PhaseCost& cost) const {
-  double own = 0, own_expected = 0, all = 0, all_expected = 0;
+/// Returns the speed of the phases of the kind of an entry or, before one has run, the geometric
+/// mean of the speeds of all kinds. Other phases that are running count by their completed units.
+WorkPlan::Speed WorkPlan::speed_of(const Entry& entry, double now) const {
+  std::map<std::string, SecondsRange> kinds;  // expected and true time of every kind
+  bool named = false;
   for (const Entry& e : entries_) {
-    if (!e.is_over() || e.end - e.begin <= 0) continue;
-    all += e.end - e.begin;
-    all_expected += e.cost.seconds;
-    if (e.cost.name != cost.name) continue;
-    own += e.end - e.begin;
-    own_expected += e.cost.seconds;
+    if (&e == &entry || !(e.is_over() || e.tells_its_speed(now))) continue;
+    // A running phase counts the less the less it has completed.
+    const double part = e.is_over() ? 1 : e.completed(),
+                 seconds = e.is_over() ? e.end - e.begin : e.at_own_speed(now);
+    if (!(part * e.cost.seconds > 0) || !(seconds > 0)) continue;
+    SecondsRange& of = kinds[e.cost.kind];
+    of.least += part * e.cost.seconds;
+    of.most += part * seconds;
+    named = named || (e.is_over() && e.cost.name == entry.cost.name);
   }
-  if (own > 0 && own_expected > 0) return {own / own_expected, kMeasured};
-  if (all > kOwnSpeedAfter && all_expected > 0)
-    return {std::clamp(all / all_expected, 0.2, 5.0), kOthersMeasured};
-  return {1, kUnmeasured};
+  if (const auto own = kinds.find(entry.cost.kind); own != kinds.end())
+    return {own->second.most / own->second.least, named ? kMeasured : kKindMeasured};
+  double mean = 0;
+  for (const auto& [kind, of] : kinds)
+    mean += std::log(of.most / of.least) / static_cast<double>(kinds.size());
+  return {std::clamp(std::exp(mean), 1 / kSlowest, kSlowest), kUnmeasured};
 }
 
 SecondsRange WorkPlan::left_of(const Entry& e, double now) const {
   if (e.is_over()) return {};
-  const Speed speed = speed_of(e.cost);
+  const Speed speed = speed_of(e, now);
   const double expected = speed.ratio * e.cost.seconds;
   // Iterations that may end early are part of a measured ratio.
   const double early = e.cost.may_end_early && speed.spread > kMeasured ? kExpectedPart : 1;
   SecondsRange out{early * expected / speed.spread, expected * speed.spread};
   if (!e.is_running()) return out;
-  const double elapsed = now - e.begin, all = e.done + e.units.most;
-  if (e.done > 0 && elapsed > kOwnSpeedAfter && e.done > kOwnSpeedFrom * all) {
-    // The remaining units may be slower or faster than those so far, the less the fewer they are.
-    const double each = elapsed / e.done, spread = 1 + 0.2 * e.units.most / all;
-    return {each * e.units.least / spread, each * e.units.most * spread};
-  }
+  const double elapsed = now - e.begin;
   out.least = std::max(0.0, out.least - elapsed);
   out.most = std::max(0.2 * out.most, out.most - elapsed);
-  return out;
+  if (!e.tells_its_speed(now)) return out;
+  // The remaining units may be slower or faster than those so far, the less the fewer they are. A
+  // phase of the same kind that is over tells what a whole phase takes, and counts the more the
+  // less is completed.
+  const double done = e.completed(), each = e.at_own_speed(now) / (e.done + e.units.most),
+               spread = 1 + 0.2 * (1 - done);
+  const double own = speed.spread < kUnmeasured ? done : 1;
+  out = {own * each * e.units.least / spread + (1 - own) * out.least,
+         own * each * e.units.most * spread + (1 - own) * out.most};
+  if (done < kHalf || e.cost.may_end_early) return out;
+  const double middle = elapsed + std::sqrt(out.least * out.most);
+  return {std::max(out.least, middle / kHalfSpread - elapsed),
+          std::min(out.most, middle * kHalfSpread - elapsed)};
 }
 
 /// Returns the last cycle that certainly runs: the one that has begun, at least the first.

@@ -18,8 +18,8 @@ struct SecondsRange {
 };
 
 /// The planned phases of a run, and the time that is left. Expected times of phases are corrected
-/// by the speed of phases that have run on this machine: of the same name if there is one, of all
-/// otherwise. All times are wall-clock seconds since the start of the run.
+/// by the speed of phases that have run on this machine: of the same kind if there is one, by the
+/// mean of all kinds otherwise. All times are wall-clock seconds since the start of the run.
 ///
 /// The result is a range: cycles and iterations may end early, and a phase that has not run yet may
 /// take longer or shorter than expected.
@@ -60,8 +60,16 @@ class WorkPlan {
     double begin = -1, end = -1;  // negative: not yet
     double done = 0;              // completed units
     SecondsRange units = {0, 0};  // units that are left
+    double first_time = -1,
+           first_done = 0;  // of the first report: what is built before has no units
     bool is_running() const { return begin >= 0 && end < 0; }
     bool is_over() const { return end >= 0; }
+    double completed() const { return done > 0 ? done / (done + units.most) : 0; }
+    /// Returns the time that all units take at the speed so far [s].
+    double at_own_speed(double now) const {
+      return (now - first_time) / (done - first_done) * (done + units.most);
+    }
+    bool tells_its_speed(double now) const;
   };
   /// Ratio of measured and expected times.
   struct Speed {
@@ -69,7 +77,7 @@ class WorkPlan {
     double spread = 1;  // factor between the expected time and the ends of its range
   };
   Entry* running(const std::string& name);
-  Speed speed_of(const PhaseCost& cost) const;
+  Speed speed_of(const Entry& entry, double now) const;
   SecondsRange left_of(const Entry& entry, double now) const;
   int last_certain_cycle() const;
 
