@@ -3,11 +3,14 @@
     xvfb-run -a pvpython check_run.py RUN [PICTURES]
 
 Shows that every frame of design/iterations.pvd, design/fields.pvd, design/components.pvd and
-motion/motion.pvd can be read, as far as the run has them: a design where there is a history.csv, a motion where there is a
-motion.csv, a path of equilibria where there is a path.csv. The design has one frame per row of
-history.csv, the motion starts and ends with its table; fields have their names, finite values, and
-densities in [0, 1]; and both can be drawn: PICTURES/design.png and PICTURES/motion.png (default:
-RUN_pictures, beside the run: a folder in it would keep the next run from taking its place).
+motion/motion.pvd can be read, as far as the run has them: a design where there is a history.csv, a
+motion where there is a motion.csv, a path of equilibria where there is a path.csv. Every frame of the
+design has a row of history.csv, the first and the last row have a frame, and the motion starts and
+ends with its table; fields have their names, finite values, and densities in [0, 1]; and both can be
+drawn: PICTURES/design.png and PICTURES/motion.png (default: RUN_pictures, beside the run, because a
+folder in it that no run has written would block the next run). The
+stresses at three times, on bodies that are warped by their displacement, are drawn to
+PICTURES/stress_1.png to stress_3.png, and the view that RUN/paraview.py opens to PICTURES/script.png.
 
 Exit code 0 when all of that holds; 1, with every defect named, when not. run.sh beside this file
 gets ParaView and calls it.
@@ -173,14 +176,89 @@ def draw(layers, time, path):
           % (path, time, *size, 100 * grey.mean(), 100 * coloured.mean()))
 
 
+def drawn_part(path):
+    """The part of a picture that is not white."""
+    picture = simple.PNGSeriesReader(FileNames=[path])
+    colours = dataset_adapter.WrapDataObject(servermanager.Fetch(picture)).PointData[0]
+    return (numpy.asarray(colours, dtype=int)[:, :3].min(axis=1) < 245).mean()
+
+
+def largest(source, time, kind, name):
+    """The largest absolute value of an array at a time; vectors have their length."""
+    source.UpdatePipeline(time)
+    found = 0
+    for piece in pieces(servermanager.Fetch(source)):
+        arrays = getattr(dataset_adapter.WrapDataObject(piece), kind)
+        if name in arrays.keys():
+            values = numpy.asarray(arrays[name], dtype=float)
+            values = values if values.ndim == 1 else numpy.linalg.norm(values, axis=1)
+            found = max(found, numpy.nanmax(numpy.abs(values), initial=0))
+    return found
+
+
+def draw_stresses(motion, times, pictures):
+    """Draws the stresses at three times on bodies that are warped by their displacement."""
+    chosen = [times[round(part * (len(times) - 1))] for part in (0.25, 0.5, 1)]
+    stress = max(largest(motion, time, "CellData", "von_mises") for time in chosen)
+    moved = max(largest(motion, time, "PointData", "displacement") for time in chosen)
+    if not expect(stress > 0 and moved > 0, "the motion has no stresses or no displacements"):
+        return
+    bounds = motion.GetDataInformation().GetBounds()
+    size = max(bounds[1] - bounds[0], bounds[3] - bounds[2])
+    warped = simple.WarpByVector(Input=motion)
+    warped.Vectors = ["POINTS", "displacement"]
+    warped.ScaleFactor = 0.05 * size / moved
+    view = simple.CreateView("RenderView")
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    view.ViewSize = [1200, 700]
+    shown = simple.Show(warped, view)
+    simple.ColorBy(shown, ("CELLS", "von_mises"))
+    colours = simple.GetColorTransferFunction("von_mises")
+    colours.ApplyPreset("Viridis (matplotlib)", True)
+    colours.RescaleTransferFunction(0, 0.5 * stress)
+    shown.SetScalarBarVisibility(view, True)
+    bar = simple.GetScalarBar(colours, view)
+    bar.TitleColor = bar.LabelColor = [0, 0, 0]
+    for number, time in enumerate(chosen, 1):
+        view.ViewTime = time
+        simple.Render(view)
+        simple.ResetCamera(view)
+        path = os.path.join(pictures, "stress_%d.png" % number)
+        simple.SaveScreenshot(path, view, ImageResolution=[1200, 700])
+        part = drawn_part(path)
+        expect(part > 0.02, path + " shows no stresses")
+        print("%s: time %g, displacements times %.3g, stresses on %.1f %%"
+              % (path, time, 1 + warped.ScaleFactor, 100 * part))
+    simple.Delete(view)
+
+
+def check_script(run, pictures):
+    """Executes the script of the run as ParaView does, and draws the view that it opens."""
+    script = os.path.join(run, "paraview.py")
+    if not expect(os.path.exists(script), script + " is missing"):
+        return
+    with open(script) as text:
+        exec(compile(text.read(), script, "exec"), {"__file__": script, "__name__": "script"})
+    view = simple.GetActiveView()
+    path = os.path.join(pictures, "script.png")
+    view.ViewSize = [1200, 700]
+    simple.SaveScreenshot(path, view, ImageResolution=[1200, 700])
+    expect(drawn_part(path) > 0.01, path + " shows nothing")
+    print(path + ": what " + os.path.basename(script) + " opens")
+    simple.Delete(view)
+
+
 def check_design(run, pictures, fields):
     design, iterations = open_series(run, "design/iterations.pvd", fields)
     _, field_times = open_series(run, "design/fields.pvd", FIELDS)
     outlines, outline_times = open_series(run, "design/components.pvd", OUTLINES)
     history = column(os.path.join(run, "history.csv"), "iteration")
     if history is not None:
-        rows = len(history)
-        expect(len(iterations) == rows, "%d designs, %d rows" % (len(iterations), rows))
+        rows = [float(row) for row in history]
+        expect(set(iterations) <= set(rows), "designs have iterations without a row")
+        ends = iterations and iterations[0] == rows[0] and iterations[-1] == rows[-1]
+        expect(ends, "the first or the last iteration has no design")
     expect(outline_times == field_times, "outlines and fields have different times")
     expect(set(field_times) <= set(iterations), "fields have times without a design")
     last = field_times and iterations and field_times[-1] == iterations[-1]
@@ -201,6 +279,8 @@ def check_motion(run, pictures, fields, table, name):
     if motion and times:
         paint = "density" if fields is MOTION else [0.4, 0.4, 0.4]
         draw([(motion, paint)], times[-1], os.path.join(pictures, "motion.png"))
+        if fields is not RIGID_MOTION:
+            draw_stresses(motion, times, pictures)
 
 
 def main(run, pictures):
@@ -212,6 +292,7 @@ def main(run, pictures):
         check_design(run, pictures, design)
     if motion:
         check_motion(run, pictures, *motion)
+    check_script(run, pictures)
 
     version = simple.GetParaViewVersion()
     print("ParaView %s: %s" % (version, "%d defects" % len(defects) if defects else "all is well"))
