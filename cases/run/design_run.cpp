@@ -129,6 +129,7 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
                                             CycleLoads& loads) {
   mmc::LoopObserver observer;
   observer.loads = [&](int, std::span<const fem::EslSets> sets) {
+    run_.progress.begin("design");
     loads.now.assign(sets.begin(), sets.end());
     if (run_.folder)
       for (size_t i = 0; i < sets.size(); ++i)

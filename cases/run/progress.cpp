@@ -42,7 +42,7 @@ void Progress::keep_showing(const std::stop_token& stop) {
   std::mutex waiting;
   std::condition_variable_any wake;
   std::unique_lock sleeping(waiting);
-  while (!wake.wait_for(sleeping, stop, kRepetition, [&] { return stop.stop_requested(); })) {
+  while (!wake.wait_for(sleeping, stop, kRepetition / 2, [&] { return stop.stop_requested(); })) {
     const std::lock_guard guard(lock_);
     if (open_ && Clock::now() - shown_ >= kRepetition) print(with_time(last_));
   }

@@ -22,7 +22,8 @@ std::vector<std::string> row_arguments(const StudyOptions& options, const Varian
 std::string row_command(const StudyOptions& options, const Variant& variant);
 
 /// Tells whether a row needs no further run: it is complete, or it failed with exit code 3. A row
-/// that reached its time limit is run again if the limit is larger now.
+/// that reached its time limit is run again if the limit is larger now, and so is a row whose files
+/// could not be written.
 bool is_answered(const StudyOptions& options, const Variant& variant, const VariantResult& result);
 
 /// Reads the result of a row. The status is "another case" if the folder has the run of another

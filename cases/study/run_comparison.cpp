@@ -169,8 +169,6 @@ std::string compare_runs(const ReportOptions& options) {
   page.settings = setting_rows(runs);
   page.plots = {{"convergence", convergence_of(runs)},
                 {"motion", motion_figure("Motion", motions, {})}};
-  for (io::Panel& panel : page.plots.back().second.panels)
-    if (panel.x.label == "time") panel.x.label = "time [s]";
   const std::filesystem::path path = std::filesystem::absolute(options.path).lexically_normal();
   write_study_page(page, results, path.string());
   return "The comparison is written to " + options.path + "\n";

@@ -63,7 +63,8 @@ VariantResult result_of(const StudyOptions& options, const Variant& variant, con
   } else if (ending.interrupted || ending.code == 4) {
     out.status = "interrupted";
   } else if (ending.signal != 0) {
-    out.status = "failed";
+    // A row that ended without an exit code is run again, except where failures are the results.
+    out.status = options.keeps_failures ? "failed" : "killed";
     out.message = "ended by signal " + std::to_string(ending.signal);
   } else if (ending.code != 0 && ending.code != kExpectationsMissed) {
     out.status = "failed";

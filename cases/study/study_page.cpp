@@ -70,7 +70,10 @@ std::string link_to(const VariantResult& run, const std::string& name, const std
 /// Returns the table of the runs with their pictures.
 std::string runs_table(const StudyPage& study, std::span<const VariantResult> runs,
                        const std::string& folder) {
-  std::vector<HtmlColumn> columns = {{"design", "", ""}};
+  const bool designed =
+      std::ranges::any_of(runs, [](const VariantResult& run) { return !run.bodies.empty(); });
+  std::vector<HtmlColumn> columns;
+  if (designed) columns.push_back({"design", "", ""});
   for (const std::string& name : study.rows.front()) columns.push_back({name, "", ""});
   std::vector<std::vector<std::string>> cells;
   size_t next = 1;
@@ -79,7 +82,7 @@ std::string runs_table(const StudyPage& study, std::span<const VariantResult> ru
       if (next >= study.rows.size()) break;
       const std::vector<std::string>& row = study.rows[next++];
       std::vector<std::string>& out = cells.emplace_back();
-      out.push_back("<div class=\"design thumbnail\">" + picture + "</div>");
+      if (designed) out.push_back("<div class=\"design thumbnail\">" + picture + "</div>");
       for (size_t c = 0; c < row.size(); ++c)
         out.push_back(c == 0 ? link_to(run, row[c], folder) : escaped(row[c]));
     }

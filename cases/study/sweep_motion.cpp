@@ -4,6 +4,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cases/assembly/prepared_case.h"
+#include "cases/results/motion_columns.h"
+#include "cases/results/quantities.h"
+#include "io/case_files/case_file.h"
 #include "io/tables.h"
 
 namespace flexmorph::cases {
@@ -25,6 +29,26 @@ Motions first_of(std::initializer_list<const char*> names, const std::string& di
   return {label, {}, {}};
 }
 
+/// Returns the descriptions of the columns of a run from the case in its folder; none if the case
+/// cannot be read or built.
+std::vector<ColumnInfo> described_columns(const std::string& directory) {
+  const std::string file = directory + "/case.toml";
+  if (!std::filesystem::exists(file)) return {};
+  try {
+    const PreparedCase of(read_scene(io::CaseFile(file)));
+    if (of.scene().statics) return path_columns(of.scene());
+    return MotionColumns(of.scene(), of.mechanism().moving_roots, true).columns();
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// Returns a name with its unit, if it has one: "plate.corner_z [m]".
+std::string with_unit(const Motions& motions, size_t column) {
+  const std::string unit = column < motions.units.size() ? motions.units[column] : "";
+  return motions.names[column] + (unit.empty() || unit == "-" ? "" : " [" + unit + "]");
+}
+
 /// Tells whether values vary by more than rounding. A quantity that is zero except for rounding is
 /// far below 1e-18 in its unit.
 bool varies(const std::vector<double>& y) {
@@ -42,7 +66,14 @@ const std::vector<double>* Motions::column(const std::string& name) const {
 }
 
 Motions read_motions(const std::string& directory, const std::string& label) {
-  return first_of({"/motion.csv", "/path.csv"}, directory, label);
+  Motions out = first_of({"/motion.csv", "/path.csv"}, directory, label);
+  if (out.names.empty()) return out;
+  const std::vector<ColumnInfo> all = described_columns(directory);
+  for (const std::string& name : out.names) {
+    const auto at = std::ranges::find(all, name, &ColumnInfo::name);
+    out.units.push_back(at == all.end() ? "" : at->unit);
+  }
+  return out;
 }
 
 double Deflection::largest() const {
@@ -71,12 +102,12 @@ io::Figure figure_of(const std::string& title) {
   return out;
 }
 
-/// Returns the names of the columns of the first variant that has columns.
-std::span<const std::string> names_of(std::span<const Motions> variants) {
+/// Returns the first variant that has columns, else one without columns.
+const Motions& first_with_columns(std::span<const Motions> variants) {
+  static const Motions none;
   const auto first = std::find_if(variants.begin(), variants.end(),
                                   [](const Motions& m) { return m.names.size() > 1; });
-  if (first == variants.end()) return {};
-  return first->names;
+  return first == variants.end() ? none : *first;
 }
 
 }  // namespace
@@ -84,12 +115,12 @@ std::span<const std::string> names_of(std::span<const Motions> variants) {
 io::Figure motion_figure(const std::string& title, std::span<const Motions> variants,
                          const Motions& reference) {
   io::Figure figure = figure_of(title);
-  const std::span<const std::string> names = names_of(variants);
-  for (size_t c = 1; c < names.size(); ++c) {
-    const std::string& name = names[c];
+  const Motions& shown = first_with_columns(variants);
+  for (size_t c = 1; c < shown.names.size(); ++c) {
+    const std::string& name = shown.names[c];
     io::Panel panel;
-    panel.title = name;
-    panel.x.label = names[0];
+    panel.title = with_unit(shown, c);
+    panel.x.label = with_unit(shown, 0);
     bool any = false;
     for (size_t v = 0; v < variants.size(); ++v) {
       const std::vector<double>* y = variants[v].column(name);
@@ -115,13 +146,13 @@ io::Figure final_figure(const std::string& title, const std::string& label,
                         std::span<const Motions> variants, std::span<const double> number,
                         std::span<const std::string> curve) {
   io::Figure figure = figure_of(title);
-  const std::span<const std::string> names = names_of(variants);
-  for (size_t c = 1; c < names.size(); ++c) {
+  const Motions& shown = first_with_columns(variants);
+  for (size_t c = 1; c < shown.names.size(); ++c) {
     io::Panel panel;
-    panel.title = names[c];
+    panel.title = with_unit(shown, c);
     panel.x.label = label;
     for (size_t v = 0; v < variants.size(); ++v) {
-      const std::vector<double>* y = variants[v].column(panel.title);
+      const std::vector<double>* y = variants[v].column(shown.names[c]);
       if (!y || y->empty()) continue;
       auto at = std::find_if(panel.curves.begin(), panel.curves.end(),
                              [&](const io::Curve& each) { return each.name == curve[v]; });
@@ -148,19 +179,20 @@ io::Figure final_figure(const std::string& title, const std::string& label,
 std::vector<std::vector<std::string>> motion_table(std::span<const Motions> variants,
                                                    std::span<const VariantResult> runs) {
   std::vector<std::vector<std::string>> rows = {
-      {"variant", "status", "quantity", "smallest", "largest", "last", "CPU s"}};
+      {"variant", "status", "quantity", "unit", "smallest", "largest", "last", "CPU s"}};
   for (size_t v = 0; v < variants.size(); ++v) {
     const std::string status = runs[v].words();
     if (variants[v].names.size() < 2)
       rows.push_back({variants[v].label,
                       status + (runs[v].message.empty() ? "" : ": " + runs[v].message), "", "", "",
-                      "", ""});
+                      "", "", ""});
     for (size_t c = 1; c < variants[v].names.size(); ++c) {
       const std::vector<double>& y = variants[v].columns[c];
       if (!varies(y)) continue;
       const auto [low, high] = std::minmax_element(y.begin(), y.end());
-      rows.push_back({variants[v].label, status, variants[v].names[c], io::to_text(*low, 6),
-                      io::to_text(*high, 6), io::to_text(y.back(), 6),
+      rows.push_back({variants[v].label, status, variants[v].names[c],
+                      c < variants[v].units.size() ? variants[v].units[c] : "",
+                      io::to_text(*low, 6), io::to_text(*high, 6), io::to_text(y.back(), 6),
                       io::to_text(runs[v].seconds_cpu, 3)});
     }
   }

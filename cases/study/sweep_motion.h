@@ -17,11 +17,13 @@ struct Motions {
   std::string label;                         ///< Label of the curves in plots.
   std::vector<std::string> names;            ///< Names of the columns (n_columns).
   std::vector<std::vector<double>> columns;  ///< Values by column (n_columns x n_rows).
+  std::vector<std::string> units = {};       ///< Units of the columns (n_columns); "" if unknown.
 
   /// Returns the values of a column (n_rows); null if there is no column of this name.
   const std::vector<double>* column(const std::string& name) const;
 };
-/// Reads the columns of the motion or of the path of equilibria in a run folder.
+/// Reads the columns of the motion or of the path of equilibria in a run folder. Units follow from
+/// the case that the folder keeps.
 /// @throws Error (input) when a file cannot be parsed.
 Motions read_motions(const std::string& directory, const std::string& label);
 /// The tip deflection of a body over the motion with its design.
@@ -55,7 +57,8 @@ io::Figure final_figure(const std::string& title, const std::string& label,
                         std::span<const Motions> variants, std::span<const double> number,
                         std::span<const std::string> curve);
 
-/// Returns a header and a row per variant and observed column: smallest, largest and last value.
+/// Returns a header and a row per variant and observed column: unit, smallest, largest and last
+/// value.
 std::vector<std::vector<std::string>> motion_table(std::span<const Motions> variants,
                                                    std::span<const VariantResult> runs);
 

@@ -201,10 +201,33 @@ TEST(Rows, ThatFailedAreNotRepeated) {
   EXPECT_FALSE(is_answered(study, variant, result));
   result.ending.over_time = false;
   EXPECT_TRUE(is_answered(study, variant, result));
+  // A full disk is no result.
+  VariantResult full = result;
+  full.message = "S/end=8/motion.csv: cannot be written: No space left on device";
+  EXPECT_FALSE(is_answered(study, variant, full));
   EXPECT_EQ(exit_code_of(study, {&result, 1}), 3);
   result.status = "interrupted";
   EXPECT_FALSE(is_answered(study, variant, result));
   EXPECT_EQ(exit_code_of(study, {&result, 1}), 4);
+}
+
+// A row that crashes is killed: the call has exit code 4, as that of --collect, and runs it again.
+TEST(Rows, ThatCrashAreRepeated) {
+  const Scratch scratch;
+  const std::string row = scratch / "study/end=1000";
+  const Words words = fall("sweep", scratch / "study", {"--vary", "time.end=1000"});
+  Words study = {FLEXMORPH_PROGRAM};
+  study.insert(study.end(), words.begin(), words.end());
+  testing::ChildProgram sweep(study, scratch / "");
+  ASSERT_TRUE(testing::eventually(sweep, [&] {
+    return test::lines_of(contents_of(row + "/motion.csv")).size() > 20;
+  })) << sweep.end().err;
+  const std::string pid = std::to_string(sweep.pid());
+  testing::run_shell("kill -KILL $(cat /proc/" + pid + "/task/" + pid + "/children)", scratch / "");
+  const testing::ChildEnd end = sweep.end();
+  EXPECT_EQ(end.code, 4) << end.out << end.err;
+  EXPECT_EQ(statuses(scratch / "study"), Words{"killed"});
+  EXPECT_EQ(test::flexmorph(scratch, with(words, {"--collect"})).code, 4);
 }
 
 // SIGTERM ends a row whole with exit code 4; the same line continues it bit for bit.
