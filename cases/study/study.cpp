@@ -126,6 +126,12 @@ std::vector<std::string> row_arguments(const StudyOptions& options, const Varian
 
 namespace {
 
+/// Prints why a row failed or was killed on the error stream.
+void report_failure(const StudyOptions& options, const VariantResult& row) {
+  if (options.keeps_failures || (row.status != "failed" && row.status != "killed")) return;
+  std::fprintf(stderr, "flexmorph: %s: %s\n", row.name.c_str(), row.message.c_str());
+}
+
 /// Runs the variants that are not finished yet on this machine.
 StudyOutcome run_here(const StudyOptions& options, std::span<const Variant> variants,
                       const ResultsChanged& changed) {
@@ -138,11 +144,7 @@ StudyOutcome run_here(const StudyOptions& options, std::span<const Variant> vari
     out.results.push_back(read_result(options, variants[i]));
     if (is_answered(options, variants[i], out.results[i])) {
       say(options, variants[i].name + ": finished before");
-      if (out.results[i].status == "failed" && !options.keeps_failures) {
-        out.exit_code = 3;
-        std::fprintf(stderr, "flexmorph: %s: %s\n", variants[i].name.c_str(),
-                     out.results[i].message.c_str());
-      }
+      report_failure(options, out.results[i]);
       continue;
     }
     // Results of an earlier run of another case in the folder do not belong to this study.
@@ -167,10 +169,7 @@ StudyOutcome run_here(const StudyOptions& options, std::span<const Variant> vari
     say(options, std::to_string(before + ended) + "/" + std::to_string(variants.size()) + " " +
                      result.name + ": " + result.words() +
                      (part < 1 ? left_text({left, left}) : ""));
-    if (result.status == "failed" && !options.keeps_failures) {
-      out.exit_code = 3;
-      std::fprintf(stderr, "flexmorph: %s: %s\n", result.name.c_str(), result.message.c_str());
-    }
+    report_failure(options, result);
     changed(out.results);
   };
   const auto started = [&](size_t at) { say(options, variants[wanted[at]].name + ": started"); };
@@ -192,6 +191,7 @@ StudyOutcome run_here(const StudyOptions& options, std::span<const Variant> vari
   const bool whole = run_children(children, options.jobs, limits,
                                   {.started = started, .ended = collect, .waiting = waiting});
   changed(out.results);
+  out.exit_code = exit_code_of(options, out.results);
   if (!whole) {
     out.exit_code = 4;
     say(options, "interrupted: the same command continues the study in " + options.directory);
