@@ -67,7 +67,7 @@ const Key& kMoveLimit =
     io::key("optimizer", "move_limit")
         .number({.noun = "a move limit", .lower = 0, .upper = 1, .lower_open = true})
         .otherwise(kSettings.move_limit)
-        .description("Largest change of a variable per iteration, as a fraction of its range.");
+        .description("Largest change of a scaled variable per iteration; 0.05 is about a cell.");
 const Key& kKktTolerance =
     io::key("optimizer", "kkt_tolerance")
         .number(not_negative("a tolerance"))
