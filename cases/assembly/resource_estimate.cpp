@@ -38,8 +38,14 @@ constexpr double kCellCopies = 2;
 // forces, displacements and solver work space, in the heat also thermal forces and the expansion at
 // held edges.
 constexpr double kLoadCopies = 2, kWorkCopies = 7, kHeatedWorkCopies = 18;
-// Verification of the outline of a design by triangles; files of its part, per component.
-constexpr double kOutlineMesh = 3e7, kPartComponent = 3e5, kPartFile = 5e4;
+// Memory of the verification of the outline of a design by triangles.
+constexpr double kOutlineMesh = 3e7;
+// Memory of the triangles and size of the files of a part with n components, divided by n and by
+// n²: many bars are thin bars, whose triangles are small. Fitted to runs with 48, 160 and 400.
+constexpr double kPartMemory[] = {3e5, 2e3}, kPartFiles[] = {2e4, 500};
+
+/// Returns a size that grows with the number of components [bytes].
+double part_bytes(const double (&of)[2], double n) { return of[0] * n + of[1] * n * n; }
 
 double sum_of(const std::vector<ResourceItem>& shares) {
   double sum = 0;
@@ -200,7 +206,7 @@ void add_design(const Scene& scene, const BodyDesign& d, ResourceEstimate& out) 
   out.memory.push_back({name, cell, (counts ? kBytesPerNumber * factor : 0) + kCell * cells});
   if (counts)
     out.memory.push_back({"the outline of '" + d.body + "'", cell,
-                          kOutlineMesh + kPartComponent * d.n_components()});
+                          kOutlineMesh + part_bytes(kPartMemory, d.n_components())});
   const double copies = kLoadCopies + (!counts            ? 0
                                        : scene.has_heat() ? kHeatedWorkCopies
                                                           : kWorkCopies);
@@ -208,8 +214,8 @@ void add_design(const Scene& scene, const BodyDesign& d, ResourceEstimate& out) 
     out.memory.push_back({"the loads of '" + d.body + "'", "esl.every",
                           kBytesPerNumber * copies * n * scene.esl->count(scene.time.end)});
   const double components = d.n_components();
-  out.disk.push_back(
-      {"exports of '" + d.body + "'", cell, kDesignExports * cells + kPartFile * components});
+  out.disk.push_back({"exports of '" + d.body + "'", cell,
+                      kDesignExports * cells + part_bytes(kPartFiles, components)});
   const double every = scene.output.vtk ? scene.output.design_every : 0;
   const double iterations = out.iterations / static_cast<double>(scene.designs.size());
   const double frames = every > 0 ? std::ceil(iterations / every) : 0;
