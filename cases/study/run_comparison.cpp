@@ -89,44 +89,44 @@ Rows number_rows(const std::vector<ComparedRun>& runs) {
   return rows;
 }
 
-/// Returns the overrides that the head of a case.toml names, see io::CaseFile::text().
-std::vector<io::Setting> overrides_in(const std::string& path) {
-  const std::string text = text_of(path), mark = "#   --set ";
-  std::vector<io::Setting> out;
-  for (size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) {
-    at += mark.size();
-    const size_t equal = text.find('=', at), end = text.find('\n', at);
-    if (equal < end)
-      out.push_back(
-          {text.substr(at, equal - at), text.substr(equal + 1, end - equal - 1), "", "", true});
-  }
-  return out;
-}
+/// A key with its values in all runs, "" where a run does not give it, and with its default.
+struct ComparedKey {
+  std::vector<std::string> values;
+  std::string fallback;
+};
 
-/// Returns the settings that differ between runs: a row per key, a column per run.
+/// Returns the settings that differ between runs: a row per key, a column per run. Titles and
+/// expectations are no settings.
 Rows setting_rows(const std::vector<ComparedRun>& runs) {
-  std::map<std::string, std::vector<std::string>> values;
+  std::map<std::string, ComparedKey> keys;
   for (size_t i = 0; i < runs.size(); ++i) {
-    std::vector<io::Setting> settings = overrides_in(runs[i].result.directory + "/case.toml");
     try {
       const Scene scene = read_scene(io::CaseFile(runs[i].result.directory + "/case.toml"));
-      for (const io::Setting& each : scene.file->settings()) settings.push_back(each);
+      for (const io::Setting& each : scene.file->values()) {
+        if (each.path == "title" || each.path.starts_with("expect.")) continue;
+        ComparedKey& key = keys[each.path];
+        key.values.resize(runs.size());
+        key.values[i] = each.value;
+        key.fallback = each.fallback;
+      }
     } catch (const Error&) {  // a case of another version has no settings here
-    }
-    for (const io::Setting& each : settings) {
-      std::vector<std::string>& row = values[each.path];
-      row.resize(runs.size());
-      row[i] = each.value;
     }
   }
   Rows rows = {{"key"}};
   for (const ComparedRun& run : runs) rows[0].push_back(run.label);
-  for (const auto& [key, row] : values) {
-    if (std::all_of(row.begin(), row.end(), [&](const auto& each) { return each == row[0]; }))
+  for (const auto& [name, key] : keys) {
+    const auto effective = [&](const std::string& value) {
+      return value.empty() ? key.fallback : value;
+    };
+    if (std::ranges::all_of(key.values, [&](const std::string& each) {
+          return effective(each) == effective(key.values[0]);
+        }))
       continue;
-    rows.push_back({key});
-    for (const std::string& value : row)
-      rows.back().push_back(value.empty() ? "not changed" : value);
+    rows.push_back({name});
+    for (const std::string& value : key.values)
+      rows.back().push_back(!value.empty()         ? value
+                            : key.fallback.empty() ? "not given"
+                                                   : key.fallback + " (default)");
   }
   return rows.size() > 1 ? rows : Rows();
 }

@@ -93,6 +93,8 @@ struct CaseDocument {
   /// Returns the values that differ from their defaults, as far as readers have accessed them, and
   /// all values that --set options gave.
   std::vector<Setting> settings() const;
+  /// Returns all values that the case gives, as far as readers have accessed them.
+  std::vector<Setting> values() const;
 
   /// Replaces texts by numbers wherever keys take numbers: formulas of [constants], and numbers
   /// with a unit, which are converted to SI units. All overrides must have been applied.

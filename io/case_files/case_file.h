@@ -172,6 +172,8 @@ class CaseFile {
   /// Returns the values that differ from their defaults, as far as readers have accessed them, and
   /// all values that overrides gave.
   std::vector<Setting> settings() const;
+  /// Returns all values that the case gives, as far as readers have accessed them.
+  std::vector<Setting> values() const;
 
   /// Returns the effective case: the text of the file, or the rewritten document if earlier
   /// overrides or `overrides` have changed it.

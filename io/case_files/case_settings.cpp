@@ -44,35 +44,50 @@ bool is_fallback(const CaseNode& node, const std::string& fallback) {
   return without_blanks(is_text ? "\"" + node.text + "\"" : node.shown) == fallback;
 }
 
-void add_settings(const CaseNode& node, const std::string& path, std::vector<Setting>& out);
+/// Tells whether a value is listed; its note belongs to its key.
+using Wanted = bool (*)(const CaseNode& value, const CaseNote& note);
 
-void add_table(const CaseNode& table, const std::string& path, std::vector<Setting>& out) {
+bool is_changed(const CaseNode& value, const CaseNote& note) {
+  return value.is_option ||
+         (!note.fallback.empty() && !is_fallback(value, without_blanks(note.fallback)));
+}
+bool is_given(const CaseNode&, const CaseNote&) { return true; }
+
+void add_settings(const CaseNode& node, const std::string& path, Wanted wanted,
+                  std::vector<Setting>& out);
+
+void add_table(const CaseNode& table, const std::string& path, Wanted wanted,
+               std::vector<Setting>& out) {
   for (const CaseNode& child : table.entries) {
     const std::string full = path.empty() ? child.key : path + "." + child.key;
     if (child.kind == CaseNode::Kind::table || !child.entries.empty())
-      add_settings(child, full, out);
-    for (const CaseNote& note : table.notes) {
-      if (note.key != child.key || child.kind == CaseNode::Kind::table) continue;
-      const bool differs =
-          !note.fallback.empty() && !is_fallback(child, without_blanks(note.fallback));
-      if (differs || child.is_option)
+      add_settings(child, full, wanted, out);
+    for (const CaseNote& note : table.notes)
+      if (note.key == child.key && child.kind != CaseNode::Kind::table && wanted(child, note))
         out.push_back({full, child.shown, note.fallback, note.sentence, child.is_option});
-    }
   }
 }
 
-void add_settings(const CaseNode& node, const std::string& path, std::vector<Setting>& out) {
-  if (node.kind == CaseNode::Kind::table) return add_table(node, path, out);
+void add_settings(const CaseNode& node, const std::string& path, Wanted wanted,
+                  std::vector<Setting>& out) {
+  if (node.kind == CaseNode::Kind::table) return add_table(node, path, wanted, out);
   const std::vector<std::string> paths = entry_paths(node, path);
   for (size_t i = 0; i < node.entries.size(); ++i)
-    if (node.entries[i].kind == CaseNode::Kind::table) add_table(node.entries[i], paths[i], out);
+    if (node.entries[i].kind == CaseNode::Kind::table)
+      add_table(node.entries[i], paths[i], wanted, out);
 }
 
 }  // namespace
 
 std::vector<Setting> CaseDocument::settings() const {
   std::vector<Setting> out;
-  add_table(root, "", out);
+  add_table(root, "", is_changed, out);
+  return out;
+}
+
+std::vector<Setting> CaseDocument::values() const {
+  std::vector<Setting> out;
+  add_table(root, "", is_given, out);
   return out;
 }
 

@@ -128,6 +128,11 @@ every = 4
   std::vector<std::string> found;
   for (const Setting& each : given.settings()) found.push_back(each.path + " = " + each.value);
   EXPECT_EQ(found, (std::vector<std::string>{"body.size = [1, 3]", "output.every = 4"}));
+  Words all;
+  for (const Setting& each : given.values()) all.push_back(each.path + " = " + each.value);
+  EXPECT_EQ(all,
+            (Words{"title = 'none'", "time.end = 1", "time.step = 2.5e-1", "time.size = [1,  2]",
+                   "body.angle = 0.5", "body.size = [1, 3]", "output.every = 4"}));
 }
 
 TEST_F(Keys, MessagesAreThoseOfTheDeclaration) {
