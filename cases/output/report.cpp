@@ -41,6 +41,8 @@ class RunPage {
     const std::string& status = result_.info.status;
     out.status = status + (result_.info.message.empty() ? "" : ": " + result_.info.message);
     out.good = status == "done" || is_running();
+    out.open = status == "done" && has_unfinished();
+    if (out.open) out.status = "done, design unfinished";
     out.refreshes = is_running();
     out.facts = headline(scene_, result_, folder_);
     if (result_.motions.motion)
@@ -72,6 +74,11 @@ class RunPage {
  private:
   bool plots() const { return scene_.output.plots; }
   bool is_running() const { return result_.info.status == "running"; }
+  bool has_unfinished() const {
+    return std::ranges::any_of(result_.design.outcomes, [](const mmc::BodyOutcome& o) {
+      return o.verdict.kind == optim::Verdict::Kind::unfinished;
+    });
+  }
   /// Writes a picture to plots/, once the run has ended.
   void keep(const std::string& name, const std::string& svg) {
     if (!is_running()) folder_.write_text("plots/" + name + ".svg", svg);
@@ -107,7 +114,8 @@ class RunPage {
           (result_.info.status.find("not usable") == std::string::npos
                ? std::string()
                : "This design is not usable; a warning at the top of the page says why. ") +
-          "The part for the shop is in design.dxf and design.step. The unit of length is mm" +
+          "The part for the shop: the outline for cutting is in the .dxf file, the solid for CAD "
+          "programs in the .step file (see Files below). The unit of length is mm" +
           (unit == "mm" ? "." : " in .step files, and " + unit + " in .dxf and .stl files."));
     for (const VerifiedOutline& v : result_.design.outlines)
       if (const std::string svg = plots() ? stress_plot(v) : ""; !svg.empty())

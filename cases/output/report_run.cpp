@@ -22,7 +22,7 @@ struct KnownFile {
   const char* contents;     ///< What it contains.
 };
 constexpr KnownFile kKnownFiles[] = {
-    {"design", ".dxf", "outline for cutting: lines and arcs in the unit output.unit"},
+    {"design", ".dxf", "outline for cutting: lines and arcs; the file names its unit"},
     {"design", ".step", "solid for CAD programs, in mm"},
     {"design", ".stl", "solid for 3D printing"},
     {"design", ".svg", "outline as a picture in full size"},
@@ -127,12 +127,17 @@ PageSection settings_section(const Scene& scene) {
   for (const io::Setting& each : scene.file->settings())
     rows.push_back({term(each.path, each.sentence), escaped(each.value), escaped(each.fallback),
                     each.is_option ? "--set" : "case file"});
-  if (!rows.empty())
+  if (rows.empty()) {
+    out.html = paragraph(
+        "No value of the case differs from the default of its key. Keys without a default, such as "
+        "sizes, are in the case file below.");
+  } else {
     out.html = sortable_table({{"key", "", ""},
                                {"value", "", ""},
                                {"default", "", "Empty if the key has no default."},
                                {"given by", "", ""}},
                               rows);
+  }
   return out;
 }
 

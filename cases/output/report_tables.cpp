@@ -243,8 +243,11 @@ PageSection cycles_section(const Scene& scene, const DesignResult& design) {
       (scene.verifies_on_cells() ? scene.verify->words() : std::string("the mesh of the case")) +
       ": the smallest " + measure_name(scene.cycle) + " is the best.");
   std::vector<HtmlColumn> columns;
-  for (const ResultQuantity<mmc::CycleVerdict>& q : cycle_quantities())
+  for (const ResultQuantity<mmc::CycleVerdict>& q : cycle_quantities()) {
     columns.push_back(column_of(q));
+    if (std::string_view(q.name) == "measure")
+      columns.back().unit = scene.cycle.compare_by == CycleMeasure::strain_energy ? "J s" : "m";
+  }
   for (const mmc::BodyVerdict& b : design.verdicts.front().bodies) {
     columns.push_back({b.body + ": compliance", "J", "Compliance of the smoothed design."});
     columns.push_back({b.body + ": crisp compliance", "J", "Compliance of the crisp design."});

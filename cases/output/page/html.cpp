@@ -12,6 +12,7 @@ namespace flexmorph::cases {
 namespace {
 
 constexpr size_t kLongTable = 20;  // number of rows above which a table scrolls
+constexpr size_t kSentence = 40;   // length of a text from which on a cell has a least width
 
 /// A term of the glossary, in lower case, and its meaning.
 struct GlossaryTerm {
@@ -33,11 +34,15 @@ std::string plain(const std::string& markdown) {
   std::string out;
   for (size_t i = 0; i < markdown.size(); ++i) {
     const char c = markdown[i];
-    if (c == '`' || c == '*' || c == '[') continue;
-    if (c == ']' && i + 1 < markdown.size() && markdown[i + 1] == '(') {
-      i = markdown.find(')', i);
-      if (i == std::string::npos) break;
-      continue;
+    if (c == '`' || c == '*') continue;
+    if (c == '[') {  // a link, or a unit in brackets
+      const size_t middle = markdown.find("](", i), close = markdown.find(']', i);
+      if (middle != std::string::npos && middle == close) {
+        out += plain(markdown.substr(i + 1, middle - i - 1));
+        i = markdown.find(')', middle);
+        if (i == std::string::npos) break;
+        continue;
+      }
     }
     out += c;
   }
@@ -95,8 +100,12 @@ bool is_number(const std::string& text) {
 }
 
 std::string cell(const std::string& html, const char* tag = "td") {
-  return std::string("<") + tag + (is_number(html) ? " class=\"number\">" : ">") + html + "</" +
-         tag + ">";
+  const bool is_sentence = html.size() > kSentence && html.find('<') == std::string::npos;
+  return std::string("<") + tag +
+         (is_number(html) ? " class=\"number\">"
+          : is_sentence   ? " class=\"sentence\">"
+                          : ">") +
+         html + "</" + tag + ">";
 }
 
 std::string head_of(const HtmlColumn& column) {

@@ -20,7 +20,10 @@ std::string facts_html(const std::vector<PageFact>& facts) {
 
 std::string header_html(const Page& page) {
   std::string out = "<header>\n<h1>" + escaped(page.title) + "</h1>\n<p><span class=\"status " +
-                    (page.good ? "good" : "bad") + "\">" + escaped(page.status) + "</span></p>\n";
+                    (!page.good  ? "bad"
+                     : page.open ? "open"
+                                 : "good") +
+                    "\">" + escaped(page.status) + "</span></p>\n";
   if (!page.facts.empty()) out += facts_html(page.facts);
   for (const std::string& each : page.notes)
     if (!each.empty()) out += paragraph(each);

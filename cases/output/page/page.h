@@ -26,6 +26,7 @@ struct Page {
   std::string title;                  ///< Title as text.
   std::string status;                 ///< Status of the run or the study as text.
   bool good = true;                   ///< False if the status is highlighted as a problem.
+  bool open = false;                  ///< True if a good status has an open point.
   bool refreshes = false;             ///< True while the page is written again and again.
   std::vector<PageFact> facts;        ///< Numbers at the top.
   std::vector<std::string> notes;     ///< Notes below the numbers, as text.

@@ -37,6 +37,13 @@ std::string displacement_text(double magnification) {
                             : "displacements times " + io::to_text(magnification, 3);
 }
 
+/// Returns the name of a load in a sentence: "load 99" for the loads of a motion, else "load
+/// 'tip'".
+std::string shown_load(const std::string& name) {
+  const std::string mark = "load_";
+  return name.starts_with(mark) ? "load " + name.substr(mark.size()) : "load '" + name + "'";
+}
+
 }  // namespace
 
 std::string stress_plot(const VerifiedOutline& outline) {
@@ -53,7 +60,7 @@ std::string stress_plot(const VerifiedOutline& outline) {
   picture.left_out = j.omitted_triangles;
   picture.marked = j.shown_stress.at;
   picture.mark = "largest stress away from loads and supports";
-  picture.title = "von Mises stress under load '" + j.shown_load + "', at most " +
+  picture.title = "von Mises stress under " + shown_load(j.shown_load) + ", at most " +
                   io::to_text(j.shown_stress.value, 3) + " Pa away from loads and supports; " +
                   displacement_text(picture.magnification);
   return io::part_svg(j.mesh, picture);
