@@ -65,6 +65,7 @@ class Gradients(unittest.TestCase):
         self.assertNotEqual(loads.objective(loads.x0), motion.objective(motion.x0))
         found = motion.solve("mma", max_iterations=3)
         self.assertEqual(found.nit, 3)
+        self.assertFalse(hasattr(found, "absent"))
         self.assertEqual(found.fun, motion.objective(found.x))
 
     def test_limits_of_the_motion(self):

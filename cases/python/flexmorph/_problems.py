@@ -35,7 +35,11 @@ class Evaluation:
 class Solution(dict):
     """The result of `Problem.solve`; entries are attributes, too."""
 
-    __getattr__ = dict.__getitem__
+    def __getattr__(self, name):
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"this solution has no {name!r}; it has {', '.join(self)}") from None
 
     def __dir__(self):
         return list(self)
