@@ -51,7 +51,10 @@ bool is_changed(const CaseNode& value, const CaseNote& note) {
   return value.is_option ||
          (!note.fallback.empty() && !is_fallback(value, without_blanks(note.fallback)));
 }
-bool is_given(const CaseNode&, const CaseNote&) { return true; }
+/// The entries of a list of tables are listed, not the list.
+bool is_given(const CaseNode& value, const CaseNote&) {
+  return value.entries.empty() || value.entries.front().kind != CaseNode::Kind::table;
+}
 
 void add_settings(const CaseNode& node, const std::string& path, Wanted wanted,
                   std::vector<Setting>& out);
