@@ -201,8 +201,7 @@ void DesignRun::run_cycles(std::vector<fem::EslSets>& loads) {
   loads = std::move(cycle_loads.best);
   if (!run_.folder) return;
   run_.progress.begin("files of the best designs");
-  for (size_t i = 0; i < best.size(); ++i)
-    run_.folder->write_design(design_.problems[i], best[i]);
+  for (size_t i = 0; i < best.size(); ++i) run_.folder->write_design(design_.problems[i], best[i]);
 }
 
 void DesignRun::design_at_rest() {

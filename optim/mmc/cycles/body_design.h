@@ -119,9 +119,9 @@ using IterationObserver = std::function<bool(const IterationReport&)>;
 ///
 /// Later cycles begin with stage 2 and have the same number of iterations per stage as the first
 /// cycle. If no widths are required, there are only the stages 1 and 2. Every stage has an equal
-/// share of the iterations; it ends at a plateau (optim::Verdict) or when its share is used; without
-/// a criterion of stagnation (StoppingWindow::rows = 0), only when its share is used. On
-/// return the problems hold the resulting designs.
+/// share of the iterations; it ends at a plateau (optim::Verdict) or when its share is used.
+/// Without a criterion of stagnation (StoppingWindow::rows = 0) it ends only when its share is
+/// used. On return the problems hold the resulting designs.
 /// @param is_running  on return false if the observer stopped the run
 /// @throws Error (numerical) from statics; rows reported before remain valid. Error (input) from
 ///         SharedProblem.
