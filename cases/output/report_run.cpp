@@ -129,8 +129,8 @@ PageSection settings_section(const Scene& scene) {
                     each.is_option ? "--set" : "case file"});
   if (rows.empty()) {
     out.html = paragraph(
-        "No value of the case differs from the default of its key. Keys without a default, such as "
-        "sizes, are in the case file below.");
+        "No value of the case differs from a fixed default. Keys without a default, and keys whose "
+        "default follows from other values, are in the case file below.");
   } else {
     out.html = sortable_table({{"key", "", ""},
                                {"value", "", ""},
