@@ -16,6 +16,7 @@ namespace flexmorph::cases {
 namespace {
 
 constexpr double kTerminal = 0.1, kElsewhere = 30;      // time between lines [s]
+constexpr std::chrono::milliseconds kWatched(100);      // least time between calls of the watcher
 constexpr std::chrono::milliseconds kRepetition(1000);  // time after which a line is shown again
 
 }  // namespace
@@ -83,11 +84,18 @@ void Progress::watch(std::function<void(const std::string&)> watcher) {
   watcher_ = std::move(watcher);
 }
 
-/// Calls the watcher unless another thread is calling it. The lock of the display is not held,
-/// because a watcher may take seconds, in which the line is shown again.
-void Progress::call_watcher(const std::string& text) {
+/// Calls the watcher if it was not called a moment ago and no other thread is calling it. Time
+/// steps can be short, and the remaining time costs an estimate. The lock of the display is
+/// released first, because a watcher may take seconds, in which the line is shown again.
+/// @param text  position of the run, without the time
+void Progress::call_watcher(std::unique_lock<std::mutex>& lock, const std::string& text) {
+  const Clock::time_point now = Clock::now();
+  if (now - watched_ < kWatched) return;
+  watched_ = now;
+  const std::string words = with_time(text);
+  lock.unlock();
   const std::unique_lock guard(watching_, std::try_to_lock);
-  if (guard.owns_lock()) watcher_(text);
+  if (guard.owns_lock()) watcher_(words);
 }
 
 void Progress::plan(WorkPlan phases) {
@@ -125,9 +133,7 @@ void Progress::iteration(const mmc::IterationReport& r) {
   tail += ", volume fraction " + formatted("%.4f", r.state.volume()) + ", KKT residual " +
           formatted("%.1e", r.iterate.kkt);
   line(head, tail, r.iteration == 1 || r.iteration % 25 == 0);
-  const std::string text = with_time(head);
-  guard.unlock();
-  call_watcher(text);
+  call_watcher(guard, head);
 }
 
 void Progress::way(const std::string& phase, double part, const std::string& words,
@@ -137,9 +143,7 @@ void Progress::way(const std::string& phase, double part, const std::string& wor
   const double pause = std::chrono::duration<double>(Clock::now() - shown_).count();
   if (!quiet_ && pause >= (terminal_ ? kTerminal : kElsewhere))
     line(phase + ": " + words, "", true);
-  const std::string text = with_time(phase + ": " + words);
-  guard.unlock();
-  call_watcher(text);
+  call_watcher(guard, phase + ": " + words);
 }
 
 Failure Progress::where() const {

@@ -54,7 +54,7 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void call_watcher(const std::string& text);
+  void call_watcher(std::unique_lock<std::mutex>& lock, const std::string& text);
   // The lock has to be held by the callers of these functions.
   double seconds() const;
   std::string with_time(const std::string& text) const;
@@ -70,7 +70,7 @@ class Progress {
   std::function<void(const std::string&)> watcher_ = [](const std::string&) {};
   Failure where_;
   WorkPlan plan_;
-  Clock::time_point begin_ = Clock::now(), shown_ = {};
+  Clock::time_point begin_ = Clock::now(), shown_ = {}, watched_ = {};
   std::string last_;         // text of the last line without the time
   std::jthread repetition_;  // shows the line again while nothing is reported (terminals only)
 };

@@ -162,6 +162,7 @@ std::string compare_runs(const ReportOptions& options) {
     results.push_back(runs.back().result);
     motions.push_back(read_motions(results.back().directory, runs.back().label));
   }
+  set_units(motions, results);
   StudyPage page;
   page.title = "Comparison of " + io::to_text(static_cast<int>(runs.size())) +
                (runs.size() == 1 ? " run" : " runs");

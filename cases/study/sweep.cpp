@@ -47,6 +47,7 @@ std::vector<Motions> motions_of(const Sweep& sweep, std::span<const VariantResul
   std::vector<Motions> out;
   for (size_t k = 0; k < runs.size(); ++k)
     out.push_back(read_motions(runs[k].directory, sweep.title_of(k)));
+  set_units(out, runs);
   return out;
 }
 

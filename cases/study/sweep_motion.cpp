@@ -66,14 +66,20 @@ const std::vector<double>* Motions::column(const std::string& name) const {
 }
 
 Motions read_motions(const std::string& directory, const std::string& label) {
-  Motions out = first_of({"/motion.csv", "/path.csv"}, directory, label);
-  if (out.names.empty()) return out;
-  const std::vector<ColumnInfo> all = described_columns(directory);
-  for (const std::string& name : out.names) {
-    const auto at = std::ranges::find(all, name, &ColumnInfo::name);
-    out.units.push_back(at == all.end() ? "" : at->unit);
-  }
-  return out;
+  return first_of({"/motion.csv", "/path.csv"}, directory, label);
+}
+
+void set_units(std::span<Motions> variants, std::span<const VariantResult> runs) {
+  const auto first =
+      std::ranges::find_if(variants, [](const Motions& m) { return m.names.size() > 1; });
+  if (first == variants.end()) return;
+  const std::vector<ColumnInfo> all =
+      described_columns(runs[static_cast<size_t>(first - variants.begin())].directory);
+  for (Motions& each : variants)
+    for (const std::string& name : each.names) {
+      const auto at = std::ranges::find(all, name, &ColumnInfo::name);
+      each.units.push_back(at == all.end() ? "" : at->unit);
+    }
 }
 
 double Deflection::largest() const {

@@ -22,10 +22,12 @@ struct Motions {
   /// Returns the values of a column (n_rows); null if there is no column of this name.
   const std::vector<double>* column(const std::string& name) const;
 };
-/// Reads the columns of the motion or of the path of equilibria in a run folder. Units follow from
-/// the case that the folder keeps.
+/// Reads the columns of the motion or of the path of equilibria in a run folder, without units.
 /// @throws Error (input) when a file cannot be parsed.
 Motions read_motions(const std::string& directory, const std::string& label);
+/// Sets the units of all variants from the case of the first run that has columns; they stay empty
+/// if this case cannot be built.
+void set_units(std::span<Motions> variants, std::span<const VariantResult> runs);
 /// The tip deflection of a body over the motion with its design.
 struct Deflection {
   std::vector<double> time, value;  ///< Times [s] and tip deflections [m] (n_rows).
