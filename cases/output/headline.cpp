@@ -79,7 +79,8 @@ PageFact gain_fact(const Gain& gain) {
   const double percent = 100 * std::abs(gain.change());
   const bool less = gain.change() < 0;
   return {less ? "Gain" : "Loss", io::to_text(percent, 3) + (less ? " % less" : " % more"),
-          gain.quantity + " than uniform material",
+          gain.quantity + ": " + io::to_text(gain.designed, 4) + " " + gain.unit +
+              ", uniform material " + io::to_text(gain.uniform, 4) + " " + gain.unit,
           "Change of the " + gain.quantity +
               " from uniform material of equal mass to the design; less is better."};
 }

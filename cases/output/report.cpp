@@ -188,7 +188,9 @@ class RunPage {
     const auto has = [&](ColumnGroup group) { return !motion.table.of_group(group).empty(); };
     std::string out;
     if (has(ColumnGroup::deflection))
-      out += plot("deflection", "Tip deflection", deflection_plot(motion, motions.uniform));
+      out += plot("deflection",
+                  motions.verified ? "Tip deflection on the mesh of the case" : "Tip deflection",
+                  deflection_plot(motion, motions.uniform));
     if (has(ColumnGroup::observed))
       out += plot("observed", "Motion of observed points", observed_plot(motion));
     if (has(ColumnGroup::measured))
@@ -216,7 +218,7 @@ class RunPage {
                   io::surfaces_svg("Deformed shapes, light colours: large strain energy", shapes));
     if (motions.verified)
       out.html += plot("deflection_verified",
-                       "Tip deflection of the verification on " +
+                       "Tip deflection on " +
                            (scene_.verify ? scene_.verify->words() : std::string("the finer mesh")),
                        deflection_plot(*motions.verified, motions.verified_uniform));
     return out;

@@ -170,19 +170,19 @@ std::string load_set_table(const RunFolder::LoadSets& sets, const RunResult& res
   const std::vector<HtmlColumn> columns = {
       {"load", "", "Number of the load set."},
       {"time", "s", "Time of the motion whose displacements the load causes."},
-      {"strain energy", "J",
-       "Strain energy of the body in the motion at this time, with the design that the cycle began "
-       "with: in the first cycle the initial bars."},
       {"compliance", "J", "Work of the load on the static displacements of the crisp design."},
-      {"deviation at the start of the cycle", "%",
-       "Strain energy of the static displacements minus that of the motion, relative to the "
-       "motion, for the design that the cycle began with. Values above 100 % are usual for initial "
-       "bars. The deviation of the final design is load_difference in run.json."},
       {"largest displacement", "m", "Largest displacement of the exported outline under the load."},
       {"largest stress", "Pa",
        "Largest von Mises stress of the exported outline, away from supports and loads."},
       {"", "", ""},
-      {"", "", ""}};
+      {"", "", ""},
+      {"strain energy at the start of the cycle", "J",
+       "Strain energy of the body in the motion at this time, with the design that the cycle began "
+       "with: in the first cycle the initial bars."},
+      {"deviation at the start of the cycle", "%",
+       "Strain energy of the static displacements minus that of the motion, relative to the "
+       "motion, for the design that the cycle began with. Values above 100 % are usual for initial "
+       "bars. The deviation of the final design is load_difference in run.json."}};
   std::vector<std::vector<std::string>> rows;
   for (size_t l = 0; l < sets.time.size(); ++l) {
     const auto number = [](const std::vector<double>& all, size_t i) {
@@ -191,16 +191,16 @@ std::string load_set_table(const RunFolder::LoadSets& sets, const RunResult& res
     std::vector<std::string>& row = rows.emplace_back();
     row = {io::to_text(static_cast<int>(l) + 1),
            io::to_text(sets.time[l], 5),
-           io::to_text(sets.strain_energy[l], 4),
            outcome ? number(outcome->load_compliances, l) : "",
-           l < sets.energy_ratio.size() ? io::to_text(100 * (sets.energy_ratio[l] - 1), 3) : "",
            outline ? number(outline->largest_displacements, l) : "",
            outline && l < outline->largest_stresses.size()
                ? io::to_text(outline->largest_stresses[l].value, 4)
                : "",
            "<button type=\"button\" class=\"scripted\" data-time=\"" + io::to_text(sets.time[l]) +
                "\">show</button>",
-           deformed_button(sets.body, l, sets.time[l])};
+           deformed_button(sets.body, l, sets.time[l]),
+           io::to_text(sets.strain_energy[l], 4),
+           l < sets.energy_ratio.size() ? io::to_text(100 * (sets.energy_ratio[l] - 1), 3) : ""};
   }
   return sortable_table(columns, rows);
 }
@@ -226,7 +226,9 @@ PageSection loads_section(const RunResult& result, const RunFolder& folder) {
   const std::vector<RunFolder::LoadSets>& all = folder.load_sets();
   if (!all.empty())
     out.html += paragraph(
-        "A row per load set; the button shows the mechanism with its design at the time of the "
+        "A row per load set. Compliance, displacement and stress are results of the final design. "
+        "The last two columns belong to the motion from which the loads were computed, which has "
+        "the design of the start of the cycle. A button shows the mechanism at the time of the "
         "load.");
   for (const RunFolder::LoadSets& sets : all) {
     if (all.size() > 1) out.html += "<h3>" + escaped(sets.body) + "</h3>\n";

@@ -151,6 +151,12 @@ std::span<const ResultQuantity<mmc::BodyOutcome>> length_scale_quantities() {
       {"widened", "-",
        "number of narrow locations of the finished part that were widened by a disc",
        [](const O& o) -> Value { return o.crisp.widened; }},
+      {"given_width", "m",
+       "smallest width of material that solid regions or borders of the domain determine, if it is "
+       "below the required one",
+       [](const O& o) -> Value {
+         return o.crisp.given_width ? Value(*o.crisp.given_width) : Value();
+       }},
       {"reached", "",
        "true if the outline is one connected region with the required widths, within 1 %",
        [](const O& o) -> Value { return o.reaches_length_scale(); }}};

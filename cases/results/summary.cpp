@@ -61,7 +61,7 @@ double mass_of(const DesignResult& design) {
   double out = 0;
   for (const mmc::BodyProblem& problem : design.problems)
     for (const mmc::BodyOutcome& outcome : design.outcomes)
-      if (outcome.body == problem.body) out += outcome.crisp.volume * mmc::full_mass_of(problem);
+      if (outcome.body == problem.body) out += mmc::part_mass_of(problem, outcome.crisp.volume);
   return out;
 }
 
@@ -70,7 +70,7 @@ std::optional<Gain> gain_of(const RunResult& result) {
         &uniform = result.motions.assessed_uniform();
   if (motion && uniform && !result.design.outcomes.empty())
     return Gain{"time integral of the strain energy", motion->strain_integral(),
-                uniform->strain_integral()};
+                uniform->strain_integral(), "J s"};
   Gain out{"compliance"};
   for (const mmc::BodyOutcome& outcome : result.design.outcomes) {
     out.designed += outcome.crisp.compliance;

@@ -18,6 +18,7 @@ double mass_of(const DesignResult& design);
 struct Gain {
   std::string quantity;              ///< Name of the quantity.
   double designed = 0, uniform = 0;  ///< Values of the designs and of uniform material.
+  const char* unit = "J";            ///< Unit of both values.
 
   /// Returns the change of the quantity by the designs [-]; negative: the designs are better.
   double change() const { return designed / uniform - 1; }

@@ -164,6 +164,14 @@ void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) 
       out.push_back({"In body '" + o.body + "', no material connects " + unused +
                      " to a load. The design does not use this support."});
     if (!o.reaches_length_scale()) out.push_back({length_scale_text(o)});
+    if (o.length_scale && o.crisp.given_width)
+      out.push_back(
+          {"In body '" + o.body +
+           "', solid regions or borders of the domain leave material "
+           "that is " +
+           io::to_text(*o.crisp.given_width, 4) +
+           " m wide, narrower than min_feature = " + io::to_text(o.length_scale->wanted.solid, 4) +
+           " m. No design can change this width. Make the solid region wider."});
     if (o.crisp.compliance > 1.15 * o.compliance)
       out.push_back({"The crisp compliance of body '" + o.body + "' is " +
                      io::to_text(o.crisp.compliance / o.compliance, 3) +

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numbers>
+
 #include "tests/optim/mmc_small.h"
 
 namespace flexmorph::mmc::test {
@@ -102,6 +105,41 @@ TEST(FinishedPart, IsTheUnionWithoutFillets) {
   EXPECT_EQ(area(part_of(problem, components, kTolerance)),
             area(regions_of(problem, components, kTolerance)));
   EXPECT_EQ(part_fractions(problem, components), fractions_of(problem, components));
+}
+
+// A solid strip of 4 mm at the free end is narrower than required, and no component can change it.
+TEST(FinishedPart, NamesTheWidthOfSolidRegionsThatAreTooNarrow) {
+  BodyProblem problem = problem_of(0);
+  const std::vector<Component> components = {bar({-0.01, 0}, {0.61, 0}, 0.012)};
+  for (const double width : {0.004, 0.02}) {
+    problem.solid = {corners_of({{0.6 - width, -0.05}, {0.6, 0.05}})};
+    const std::vector<Region> part = regions_of(problem, components, kTolerance);
+    EXPECT_GE(feature(problem, part), 0.99 * kFeature);
+    const std::optional<double> given = given_width_of(problem, part);
+    ASSERT_EQ(given.has_value(), width < kFeature);
+    if (given) EXPECT_NEAR(*given, width, 1e-9);
+  }
+  problem.widths.solid = 0;
+  EXPECT_FALSE(given_width_of(problem, regions_of(problem, components, kTolerance)));
+}
+
+// The mass of a part without its pins: a full rectangle with a bore weighs rho t (W H - pi r^2).
+// The polygon of the bore lies within 1 um of the circle, which changes the mass by less than 2e-6.
+TEST(FinishedPart, WeighsNoPins) {
+  BodyProblem problem = problem_of(0);
+  const double radius = 0.01;
+  problem.bores = {circle_within({0.02, 0}, radius, 1e-6)};
+  std::vector<Vec2> hole = problem.bores[0];
+  std::reverse(hole.begin(), hole.end());
+  problem.domain = {
+      corners_of({{kGrid.x0, kGrid.y0}, {kGrid.x0 + kGrid.width, kGrid.y0 + kGrid.height}}),
+      {hole}};
+  const std::vector<Component> all = {bar({-0.1, 0}, {0.7, 0}, 0.2)};
+  const std::vector<Region> part = part_of(problem, all, kTolerance);
+  const double weight = kSection.density * kSection.thickness,
+               exact = weight * (kGrid.width * kGrid.height - std::numbers::pi * radius * radius);
+  EXPECT_NEAR(part_mass_of(problem, area(part) / area(domain_of(problem))), exact, 1e-5 * exact);
+  EXPECT_GT(full_mass_of(problem), exact * (1 + 2e-3));
 }
 
 }  // namespace

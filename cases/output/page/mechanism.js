@@ -23,13 +23,13 @@ function readAnimation(data) {
   };
 }
 
-/** Returns the last frame that is not after a time, or the first frame. */
+/** Returns the frame whose time is nearest. */
 function frameAt(times, time) {
   let [low, high] = [0, times.length - 1];
   while (low < high) {
-    const middle = (low + high + 1) >> 1;
-    if (times[middle] <= time + 1e-12) low = middle;
-    else high = middle - 1;
+    const middle = (low + high) >> 1;
+    if (times[middle] + times[middle + 1] < 2 * time) low = middle + 1;
+    else high = middle;
   }
   return low;
 }

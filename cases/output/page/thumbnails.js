@@ -28,9 +28,7 @@ function inBodyAxes(points, [x, y, angle]) {
 function deformedInMotion(body, time, design, size) {
   const { motion } = page.motionView;
   const grid = motion.bodies.find((b) => b.name === body && b.kind === "grid");
-  let frame = frameAt(motion.time, time);
-  const next = Math.min(frame + 1, motion.time.length - 1);
-  if (Math.abs(motion.time[next] - time) < Math.abs(motion.time[frame] - time)) frame = next;
+  const frame = frameAt(motion.time, time);
   const largest = largestDistance(grid.points[frame], deformedGrid(grid, frame, 0));
   const factor = roundFactor(largest > 0 ? size / (8 * largest) : 1);
   const pose = grid.poses.slice(3 * frame, 3 * frame + 3);

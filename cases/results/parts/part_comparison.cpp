@@ -45,8 +45,8 @@ double allowed(const BodyView& v) {
 }
 
 Number mass(const BodyView& v, double volume) {
-  const double full = mmc::full_mass_of(v.problem());
-  return full > 0 ? Number(volume * full) : std::nullopt;
+  const double mass = mmc::part_mass_of(v.problem(), volume);
+  return mass > 0 ? Number(mass) : std::nullopt;
 }
 
 constexpr Row kRows[] = {

@@ -49,6 +49,10 @@ Plate plate_of(const BodyProblem& p) { return {p.grid, p.section, p.outside}; }
 
 double full_mass_of(const BodyProblem& p) { return plate_of(p).full_mass(); }
 
+double part_mass_of(const BodyProblem& p, double volume) {
+  return volume * p.section.density * p.section.thickness * area(domain_of(p));
+}
+
 Ersatz ersatz_of(const BodyProblem& p) {
   return {p.grid, p.bands.back().alpha, p.solid, p.empty, p.outside};
 }
@@ -213,6 +217,17 @@ Features features_of(const BodyProblem& problem, std::span<const Region> regions
   return out;
 }
 
+std::optional<double> given_width_of(const BodyProblem& problem, std::span<const Region> regions) {
+  constexpr double kWidthTolerance = 0.98;  // Polygons lie up to 0.01 cells within round outlines.
+  if (!(problem.widths.solid > 0)) return {};
+  std::optional<double> out;
+  for (const LengthScaleViolation& location :
+       length_scale_violations(regions, domain_of(problem), kWidthTolerance * problem.widths.solid))
+    if (location.solid && is_given(problem, location) && !(out && *out <= location.width))
+      out = location.width;
+  return out;
+}
+
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions) {
   const std::vector<HeldOrLoaded> locations = locations_of(problem);
   std::vector<std::vector<bool>> touched;
@@ -237,6 +252,7 @@ bool add_outline(const BodyProblem& problem, const FinishedPart& part, CrispDesi
       if (row->even) out.further[key_of(*row)] = out.volume * row->full(plate_of(problem));
     out.connectivity = connectivity_of(problem, part.regions);
     out.features = features_of(problem, part.regions);
+    out.given_width = given_width_of(problem, part.regions);
     return true;
   } catch (const Error& error) {
     if (error.kind() == Error::Kind::input) throw;

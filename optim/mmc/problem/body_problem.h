@@ -64,6 +64,10 @@ struct BodyProblem {
 Plate plate_of(const BodyProblem& problem);
 /// Returns the mass ρ c A of the body when its whole domain is full [kg].
 double full_mass_of(const BodyProblem& problem);
+/// Returns the mass of a part whose material fills a fraction of the domain [kg]. Pins in bores do
+/// not belong to the part.
+/// @param volume  volume fraction in the domain, whose bores are holes [-]
+double part_mass_of(const BodyProblem& problem, double volume);
 
 /// Returns the map from nodal Heaviside values to scale factors of the cells.
 Ersatz ersatz_of(const BodyProblem& problem);
@@ -109,6 +113,10 @@ std::vector<LengthScaleViolation> length_scale_violations_of(const BodyProblem& 
 /// length_scale_violations_of().
 Features features_of(const BodyProblem& problem, std::span<const Region> regions);
 
+/// Returns the smallest width of material below the required one at the locations that
+/// length_scale_violations_of() leaves out; nothing if there are none [m].
+std::optional<double> given_width_of(const BodyProblem& problem, std::span<const Region> regions);
+
 /// Returns how regions connect supports and loads. The result is exact: a slit far narrower than a
 /// cell separates regions. Regions that share only a vertex are not connected.
 Connectivity connectivity_of(const BodyProblem& problem, std::span<const Region> regions);
@@ -138,6 +146,10 @@ struct CrispDesign {
 
   /// Smallest widths, see features_of(); absent when the outlines cannot be united.
   std::optional<Features> features;
+
+  /// Smallest width of material that solid regions or borders of the domain determine, where it is
+  /// below BodyProblem::widths; features do not contain it, because no design can change it [m].
+  std::optional<double> given_width;
   int widened = 0;              ///< FinishedPart::widened of the finished part.
   double seconds_outlines = 0;  ///< CPU seconds of the union, its connectivity and its widths.
 };
