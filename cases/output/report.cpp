@@ -48,6 +48,7 @@ class RunPage {
     if (result_.motions.motion)
       for (const std::string& each : result_.motions.motion->remarks)
         out.notes.push_back("Note: " + sentence(each));
+    for (const std::string& each : notes_of(result_)) out.notes.push_back("Note: " + each);
     for (const Warning& each : result_.warnings) out.warnings.push_back(each.words);
     out.sections = {design_section(), mechanism_section(), iterations_section()};
     const DesignResult& design = result_.design;

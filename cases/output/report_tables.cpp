@@ -243,7 +243,7 @@ PageSection cycles_section(const Scene& scene, const DesignResult& design) {
   out.html = paragraph(
       "The cycles are compared by the motion on " +
       (scene.verifies_on_cells() ? scene.verify->words() : std::string("the mesh of the case")) +
-      ": the smallest " + measure_name(scene.cycle) + " is the best.");
+      ": the smallest " + measure_name(scene.cycle) + " is the best. " + design.cycles_end);
   std::vector<HtmlColumn> columns;
   for (const ResultQuantity<mmc::CycleVerdict>& q : cycle_quantities()) {
     columns.push_back(column_of(q));

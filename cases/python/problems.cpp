@@ -6,6 +6,7 @@
 #include "cases/results/schema.h"
 #include "cases/run/design_problem.h"
 #include "optim/cancellable_problem.h"
+#include "optim/mmc/cycles/usability.h"
 
 namespace flexmorph::python {
 namespace {
@@ -74,8 +75,11 @@ class Problem {
     std::vector<mmc::CrispDesign> found;
     run([&] { found = of_->crisp(x); });
     py::list out;
-    for (const mmc::CrispDesign& c : found) {
+    const std::vector<double> violations = of_->crisp_violations(found);
+    for (size_t b = 0; b < found.size(); ++b) {
+      const mmc::CrispDesign& c = found[b];
       py::dict each;
+      each["crisp_violation"] = violations[b];
       each["compliance"] = c.compliance;
       each["volume"] = c.volume;
       each["connected"] = c.connectivity.connected;
@@ -138,6 +142,7 @@ class Problem {
       py::dict numbers;
       for (const auto& quantity : cases::design_quantities())
         numbers[quantity.name] = object_of(quantity.value(outcomes[b]));
+      numbers["crisp_violation"] = mmc::crisp_violation(designed[b], outcomes[b].crisp);
       out[designed[b].body.c_str()] =
           py::make_tuple(array_of(designed[b].design.components()), numbers);
     }

@@ -61,6 +61,7 @@ struct DesignResult {
   std::vector<VerifiedOutline> outlines;    ///< Verified outlines, in the order of the outcomes.
   std::vector<StaticLoad> static_loads;     ///< Load cases of the final design of a static plate.
   std::vector<mmc::CycleVerdict> verdicts;  ///< Assessments of cycles of a run with several.
+  std::string cycles_end;                   ///< Sentence on the reason for which the cycles ended.
 
   /// Corrected cycles; the first entry is the design before the corrections.
   std::vector<mmc::CorrectedCycle> corrections;

@@ -164,14 +164,6 @@ void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) 
       out.push_back({"In body '" + o.body + "', no material connects " + unused +
                      " to a load. The design does not use this support."});
     if (!o.reaches_length_scale()) out.push_back({length_scale_text(o)});
-    if (o.length_scale && o.crisp.given_width)
-      out.push_back(
-          {"In body '" + o.body +
-           "', solid regions or borders of the domain leave material "
-           "that is " +
-           io::to_text(*o.crisp.given_width, 4) +
-           " m wide, narrower than min_feature = " + io::to_text(o.length_scale->wanted.solid, 4) +
-           " m. No design can change this width. Make the solid region wider."});
     if (o.crisp.compliance > 1.15 * o.compliance)
       out.push_back({"The crisp compliance of body '" + o.body + "' is " +
                      io::to_text(o.crisp.compliance / o.compliance, 3) +
@@ -360,6 +352,19 @@ Warnings warnings_of(const Scene& scene, const RunResult& result) {
   for (const std::string& note : scene.notes) out.push_back({note});
   if (!result.info.lost_frames.empty()) out.push_back({result.info.lost_frames});
   if (!result.info.missing_exports.empty()) out.push_back({result.info.missing_exports});
+  return out;
+}
+
+std::vector<std::string> notes_of(const RunResult& result) {
+  std::vector<std::string> out;
+  for (const mmc::BodyOutcome& o : result.design.outcomes)
+    if (o.length_scale && o.crisp.given_width)
+      out.push_back("In body '" + o.body + "', solid regions or borders of the domain make the " +
+                    "material " + io::to_text(*o.crisp.given_width, 3) +
+                    " m wide, which is less than min_feature = " +
+                    io::to_text(o.length_scale->wanted.solid, 3) +
+                    " m. No design can change this width, therefore min_feature does not apply "
+                    "there.");
   return out;
 }
 

@@ -12,6 +12,10 @@ namespace flexmorph::cases {
 /// than 5 % of its largest value.
 std::vector<Warning> warnings_of(const Scene& scene, const RunResult& result);
 
+/// Returns notes about a result that need no correction: widths of solid regions and of the domain
+/// that are smaller than the required ones.
+std::vector<std::string> notes_of(const RunResult& result);
+
 /// Tells whether the integrator hardly damps Lagrange multipliers. With constraints,
 /// generalized_alpha is stable only for rho_inf < 1 - c h, where c depends on the rates of the
 /// motion (Arnold & Brüls 2007 assume rho_inf < 1). For example, a free slider-crank with h = 1e-3

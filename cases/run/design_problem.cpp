@@ -6,6 +6,7 @@
 #include "cases/run/motion_run.h"
 #include "geometry/text.h"
 #include "optim/mmc/cycles/optimality_certificate.h"
+#include "optim/mmc/cycles/usability.h"
 #include "optim/mmc/problem/finished_part.h"
 
 namespace flexmorph::cases {
@@ -220,6 +221,14 @@ std::vector<mmc::CrispDesign> DesignProblem::crisp(const VectorXd& x) const {
   const std::vector<std::vector<Component>> all = components(x);
   for (size_t b = 0; b < all.size(); ++b)
     out.push_back(mmc::crisp_design(loaded_->problems[b], all[b], *loaded_->loads[b]));
+  return out;
+}
+
+std::vector<double> DesignProblem::crisp_violations(
+    const std::vector<mmc::CrispDesign>& designs) const {
+  std::vector<double> out;
+  for (size_t b = 0; b < designs.size(); ++b)
+    out.push_back(mmc::crisp_violation(loaded_->problems[b], designs[b]));
   return out;
 }
 

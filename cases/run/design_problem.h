@@ -68,6 +68,8 @@ class DesignProblem {
   std::vector<std::vector<Component>> components(const VectorXd& x) const;
   /// Returns the crisp designs that the outlines of x enclose, one per body.
   std::vector<mmc::CrispDesign> crisp(const VectorXd& x) const;
+  /// Returns the violations mmc::crisp_violation() of the limits by crisp designs, one per body.
+  std::vector<double> crisp_violations(const std::vector<mmc::CrispDesign>& designs) const;
 
   /// Designs the bodies from their start designs through all stages of the first cycle of a run.
   /// The problem itself does not change.

@@ -67,7 +67,25 @@ std::string verdict_text(const Cycle& cycle, const mmc::CycleVerdict& v) {
          io::to_text(v.objective, 5) + " J, " + measure_text(cycle, v.measure) + "." +
          (v.violation > 0 ? " The designs violate limits." : "") +
          (v.best ? " This cycle is the best one so far."
-                 : " This cycle is not better than the earlier cycles and is the last one.");
+                 : " This cycle is not better than the earlier cycles.");
+}
+
+/// Returns a sentence with the reason for which the cycles end.
+std::string end_text(const Cycle& cycle, mmc::CyclesEnd reason) {
+  switch (reason) {
+    case mmc::CyclesEnd::loads_agree:
+      return "The cycles end, because the loads of every design agree with those of its motion "
+             "within cycle.load_difference = " +
+             io::to_text(cycle.load_difference, 3) + ".";
+    case mmc::CyclesEnd::little_improvement:
+      return "The cycles end, because the last cycle is not better by more than the fraction "
+             "cycle.tolerance = " +
+             io::to_text(cycle.tolerance, 3) + ".";
+    case mmc::CyclesEnd::most_cycles:
+      return "The cycles end, because cycle.max_cycles = " + std::to_string(cycle.max_cycles) +
+             " is reached.";
+  }
+  return "";
 }
 
 mmc::DesignSettings settings_of(const RunContext& run, KeptEvaluations& kept) {
@@ -161,6 +179,10 @@ mmc::LoopObserver DesignRun::cycle_observer(CycleMotions& motions, const KeptEva
   observer.difference = [this](int cycle, std::span<const mmc::LoadDifference> all) {
     for (const mmc::LoadDifference& d : all)
       run_.progress.say("cycle " + std::to_string(cycle) + ": " + difference_text(d));
+  };
+  observer.end = [this](mmc::CyclesEnd reason) {
+    design_.cycles_end = end_text(run_.scene().cycle, reason);
+    run_.progress.say(design_.cycles_end);
   };
   return observer;
 }

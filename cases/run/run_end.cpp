@@ -156,6 +156,7 @@ RunResult end_well(RunResult& result, RunFiles& files, Progress& progress) {
 /// Prints the warnings, the violated expectations and the path of the report.
 /// @return exit code of the run
 int say_end(const RunResult& result, bool is_case, Progress& progress, const std::string& path) {
+  for (const std::string& note : notes_of(result)) progress.say(note);
   for (const Warning& each : result.warnings)
     progress.object(each.unusable ? "not usable" : "warning", each.words);
   size_t missed = 0;

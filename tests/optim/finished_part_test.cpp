@@ -117,7 +117,9 @@ TEST(FinishedPart, NamesTheWidthOfSolidRegionsThatAreTooNarrow) {
     EXPECT_GE(feature(problem, part), 0.99 * kFeature);
     const std::optional<double> given = given_width_of(problem, part);
     ASSERT_EQ(given.has_value(), width < kFeature);
-    if (given) EXPECT_NEAR(*given, width, 1e-9);
+    if (given) {
+      EXPECT_NEAR(*given, width, 1e-9);
+    }
   }
   problem.widths.solid = 0;
   EXPECT_FALSE(given_width_of(problem, regions_of(problem, components, kTolerance)));

@@ -44,7 +44,10 @@ TEST(EslLoop, EndsWhenTheLoadsAreThoseOfTheMotion) {
     EXPECT_NEAR(all[0].geometric, 0, 1e-12);
     differences.push_back(all[0].loads);
   };
+  std::vector<CyclesEnd> ends;
+  observer.end = [&](CyclesEnd reason) { ends.push_back(reason); };
   esl_loop(problems, simulate, settings, observer);
+  EXPECT_EQ(ends, std::vector{CyclesEnd::loads_agree});
   EXPECT_EQ(calls, 3);
   ASSERT_EQ(differences.size(), 2u);
   EXPECT_GT(differences[0], LoadDifference::kLargest);
@@ -103,7 +106,10 @@ TEST(EslLoop, EndsWhenACycleDoesNotPay) {
     observer.verdict = [&](std::span<const CycleVerdict> all) {
       verdicts.assign(all.begin(), all.end());
     };
+    std::vector<CyclesEnd> ends;
+    observer.end = [&](CyclesEnd reason) { ends.push_back(reason); };
     const auto outcome = esl_loop(problems, simulate, settings, observer);
+    EXPECT_EQ(ends, std::vector{CyclesEnd::little_improvement});
     const size_t cycles = tolerance == 0 ? 3 : 2;
     EXPECT_EQ(calls, static_cast<int>(cycles) + 1);
     ASSERT_EQ(crisp.size(), cycles);
@@ -198,6 +204,16 @@ TEST(EslLoop, IsVerifiedByAnotherMotion) {
   verified = calls = 0;
   esl_loop(problems, simulate, settings, {});
   EXPECT_EQ(verified, 0);
+
+  // The second of two cycles is better, and its number ends the cycles.
+  settings.max_cycles = 2;
+  problems = one_body({1.5});
+  verified = calls = 0;
+  std::vector<CyclesEnd> ends;
+  observer = {};
+  observer.end = [&](CyclesEnd reason) { ends.push_back(reason); };
+  esl_loop(problems, simulate, settings, observer);
+  EXPECT_EQ(ends, std::vector{CyclesEnd::most_cycles});
 }
 
 }  // namespace

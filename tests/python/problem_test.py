@@ -259,6 +259,8 @@ class Solutions(unittest.TestCase):
         self.assertEqual(len(rows), found.nit)
         self.assertLess(found.violation, 1e-4)
         self.assertEqual(found.fun, p.objective(found.x))
+        excess = found.designs["beam"].results["volume"] / 0.4 - 1
+        self.assertAlmostEqual(found.crisp_violation, excess if excess > 5e-3 else 0, places=12)
         self.assertLess(found.fun, p.objective(p.x0) - 0.3)
         next_stage = p.at("last", found.x)
         np.testing.assert_array_equal(next_stage.designs(next_stage.x0)["beam"].components,
@@ -281,6 +283,16 @@ class Solutions(unittest.TestCase):
             bits, compliance = text.split()
             self.assertEqual(bits, run.designs[body].components.tobytes().hex())
             self.assertEqual(float(compliance), run.designs[body].results["compliance"])
+
+    def test_solve_tells_the_violation_of_the_crisp_design(self):
+        # Without iterations the designs are the initial bars, which fill more than the limit allows.
+        p = flexmorph.load("short_beam", set={**COARSE, "design.max_volume": 0.2}).problem()
+        for stages in (False, True):
+            found = p.solve("mma", stages=stages, max_iterations=1)
+            results = found.designs["beam"].results
+            excess = results["crisp_volume" if stages else "volume"] / 0.2 - 1
+            self.assertGreater(excess, 0.1)
+            self.assertAlmostEqual(found.crisp_violation, excess, places=12)
 
     def test_a_callback_stops(self):
         p = flexmorph.load("short_beam", set=COARSE).problem(stage="coarse")

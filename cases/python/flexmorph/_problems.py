@@ -267,15 +267,21 @@ class Problem:
         Solution
             With stages: ``designs`` by bodies, whose ``results`` are the numbers of the design.
             Without: ``x``, ``fun``, ``constraints``, ``kkt``, ``violation``, ``nit``, ``nfev``,
-            ``status``, ``message``, ``success``, and ``designs`` at x.
+            ``status``, ``message``, ``success``, and ``designs`` at x. Always: ``crisp_violation``,
+            the largest relative amount by which a crisp design exceeds a limit; 0 up to 0.5 %, and
+            infinite if no material connects a load to a support. The other numbers without stages
+            are those of the smoothed design.
         """
         options = {name: float(value) for name, value in options.items()}
         if stages or (stages is None and not self._of_motion):
             found = self._core.design(optimizer, options, callback)
-            return Solution(designs={body: Design(self._case, body, *each)
-                                     for body, each in found.items()})
-        out = Solution(self._core.minimize(optimizer, options, callback))
-        out["designs"] = self.designs(out["x"])
+            out = Solution(designs={body: Design(self._case, body, *each)
+                                    for body, each in found.items()})
+        else:
+            out = Solution(self._core.minimize(optimizer, options, callback))
+            out["designs"] = self.designs(out["x"])
+        out["crisp_violation"] = max(design.results["crisp_violation"]
+                                     for design in out["designs"].values())
         return out
 
     _of_motion = False

@@ -175,12 +175,15 @@ class Loop {
       const bool last = cycle == settings_.max_cycles;
       const std::vector<fem::ScaleFactors> factors = factors_of(problems_);
       if (settings_.verification_motion) record(settings_.verification_motion(factors));
-      if (settings_.verification_motion && (last || !verdicts_.improved(settings_.tolerance)))
-        break;
+      if (settings_.verification_motion && ends(last)) break;
       motion = simulate_(factors);
       if (!settings_.verification_motion) record(motion.measure);
       const bool fits = loads_fit(cycle, motion.loads);
-      if (last || !verdicts_.improved(settings_.tolerance) || (fits && of_use())) break;
+      if (fits && of_use() && verdicts_.improved(settings_.tolerance)) {
+        say_end(CyclesEnd::loads_agree);
+        break;
+      }
+      if (ends(last)) break;
     }
     return verdicts_.take_best(problems_);
   }
@@ -194,6 +197,19 @@ class Loop {
     if (observer_.cycle) observer_.cycle(cycle, outcome_);
     if (is_running) verdicts_.add(cycle, problems_, outcome_);
     return is_running;
+  }
+
+  /// Tells whether the measure of the last cycle, or the number of cycles, ends the cycles.
+  bool ends(bool last) const {
+    const bool improved = verdicts_.improved(settings_.tolerance);
+    if (!improved)
+      say_end(CyclesEnd::little_improvement);
+    else if (last)
+      say_end(CyclesEnd::most_cycles);
+    return last || !improved;
+  }
+  void say_end(CyclesEnd reason) const {
+    if (observer_.end) observer_.end(reason);
   }
 
   void record(double measure) {

@@ -48,6 +48,13 @@ struct CycleVerdict {
   bool best = false;     ///< True if this cycle is the best one so far; then it is the result.
 };
 
+/// The event that ends the cycles.
+enum class CyclesEnd {
+  loads_agree,         ///< The loads agree with those of the motion with the new designs.
+  little_improvement,  ///< A cycle improves the measure by less than the tolerance.
+  most_cycles          ///< The largest number of cycles is reached.
+};
+
 /// Settings of the cycles of motion, loads and design.
 struct LoopSettings {
   int max_cycles = 1;       ///< Largest number of cycles.
@@ -77,6 +84,8 @@ struct LoopObserver {
   /// Called after the loads of a cycle have been compared with the loads of the motion with its
   /// designs, one entry per problem.
   std::function<void(int cycle, std::span<const LoadDifference>)> difference;
+  /// Called at the end of the cycles of a run of several cycles with the reason of the end.
+  std::function<void(CyclesEnd)> end = {};
 };
 
 /// Repeats motion, equivalent static loads and design (optim/README.md, Cycles) and returns the
