@@ -152,7 +152,10 @@ std::vector<PageFact> headline(const Scene& scene, const RunResult& result,
     out.push_back({"Verdict", verdict_of(design), verdict_note(scene, result),
                    meaning_of(design_quantities(), "verdict")});
     if (const double mass = mass_of(design); mass > 0)
-      out.push_back({"Mass", with_unit(mass, "kg"), "of all designs", ""});
+      out.push_back({"Mass", with_unit(mass, "kg"),
+                     design.outcomes.size() > 1 ? "of all designed bodies"
+                                                : "of '" + design.outcomes.front().body + "'",
+                     "Mass of the crisp designs, without point masses and pins."});
     else
       out.push_back({"Volume fraction", io::to_text(design.outcomes.front().crisp.volume, 4), "",
                      meaning_of(design_quantities(), "crisp_volume")});

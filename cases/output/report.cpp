@@ -115,18 +115,21 @@ class RunPage {
           (result_.info.status.find("not usable") == std::string::npos
                ? std::string()
                : "This design is not usable; a warning at the top of the page says why. ") +
-          "The part for the shop: the outline for cutting is in the .dxf file, the solid for CAD "
-          "programs in the .step file (see Files below). The unit of length is mm" +
+          (has_unfinished() ? "The optimization is not finished: more iterations may improve this "
+                              "design. "
+                            : "") +
+          "The picture is the part for the shop: the union of the loaded components with fillets. "
+          "Its outline for cutting is in the .dxf file, and its solid for CAD programs in the "
+          ".step "
+          "file (see Files below). The unit of length is mm" +
           (unit == "mm" ? "." : " in .step files, and " + unit + " in .dxf and .stl files."));
     for (const VerifiedOutline& v : result_.design.outlines)
       if (const std::string svg = plots() ? stress_plot(v) : ""; !svg.empty())
-        out.html += "<h3>" +
-                    explained("Von Mises stress of " + v.body + " under " + shown_load(v)) +
-                    "</h3>\n" +
-                    paragraph(
-                        "Peaks of the stress on at most 0.5 % of the area have the lightest "
-                        "colour, too.") +
-                    picture("stress_" + v.body, svg);
+        out.html +=
+            "<h3>" + explained("Von Mises stress of " + v.body + " under " + shown_load(v)) +
+            "</h3>\n" +
+            paragraph("The colours end at the stress that at most 0.5 % of the area exceeds.") +
+            picture("stress_" + v.body, svg);
     return out;
   }
 
@@ -180,7 +183,12 @@ class RunPage {
         out.html += "<details><summary>Initial design of " + escaped(p.body) +
                     "</summary><div class=\"design\">" + figure(p.start) + "</div></details>\n";
     if (!out.html.empty())
-      out.html = "<div id=\"iterations-view\" class=\"interactive scripted\"></div>\n" + out.html;
+      out.html =
+          paragraph(
+              "The pictures show the smoothed components of each iteration, without fillets and "
+              "with components that carry no load. The objective and the KKT residual jump where a "
+              "stage begins, because every stage has its own formulation.") +
+          "<div id=\"iterations-view\" class=\"interactive scripted\"></div>\n" + out.html;
     return out;
   }
 

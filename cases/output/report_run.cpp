@@ -38,6 +38,7 @@ constexpr KnownFile kKnownFiles[] = {
     {"motion/motion", ".pvd", "moving bodies, for ParaView"},
     {"history", ".csv", "a row per design iteration"},
     {"motion_uniform", ".csv", "the motion with uniform material"},
+    {"motion_verified_uniform", ".csv", "uniform material in the same motion"},
     {"motion_verified", ".csv", "the motion by which the design is assessed"},
     {"motion", ".csv", "a row per time step of the motion"},
     {"path", ".csv", "a row per equilibrium"},
@@ -120,24 +121,34 @@ PageSection files_section(RunFolder& folder) {
   return {"files", "Files", sortable_table({{"file", "", ""}, {"contents", "", ""}}, rows)};
 }
 
+namespace {
+
+/// Returns a table of values that a case gives, with their defaults.
+std::string settings_table(const std::vector<io::Setting>& settings) {
+  std::vector<std::vector<std::string>> rows;
+  for (const io::Setting& each : settings)
+    rows.push_back({term(each.path, each.sentence), escaped(each.value), escaped(each.fallback),
+                    each.is_option ? "--set" : "case file"});
+  return sortable_table({{"key", "", ""},
+                         {"value", "", ""},
+                         {"default", "", "Empty if the key has no default."},
+                         {"given by", "", ""}},
+                        rows);
+}
+
+}  // namespace
+
 PageSection settings_section(const Scene& scene) {
   PageSection out{"settings", "Settings that differ from their defaults", ""};
   if (!scene.file) return out;
-  std::vector<std::vector<std::string>> rows;
-  for (const io::Setting& each : scene.file->settings())
-    rows.push_back({term(each.path, each.sentence), escaped(each.value), escaped(each.fallback),
-                    each.is_option ? "--set" : "case file"});
-  if (rows.empty()) {
-    out.html = paragraph(
-        "No value of the case differs from a fixed default. Keys without a default, and keys whose "
-        "default follows from other values, are in the case file below.");
-  } else {
-    out.html = sortable_table({{"key", "", ""},
-                               {"value", "", ""},
-                               {"default", "", "Empty if the key has no default."},
-                               {"given by", "", ""}},
-                              rows);
-  }
+  const std::vector<io::Setting> changed = scene.file->settings(),
+                                 dependent = scene.file->dependent_settings();
+  out.html = changed.empty() ? paragraph("No value of the case differs from a fixed default.")
+                             : settings_table(changed);
+  if (!dependent.empty())
+    out.html += "<details><summary>" + io::to_text(static_cast<int>(dependent.size())) +
+                " given values whose defaults depend on the case</summary>" +
+                settings_table(dependent) + "</details>\n";
   return out;
 }
 

@@ -212,8 +212,14 @@ std::string worst_load(const RunFolder::LoadSets& sets, const RunResult& result,
     if (o.body != sets.body || o.load_compliances.empty()) continue;
     const auto largest = std::max_element(o.load_compliances.begin(), o.load_compliances.end());
     const auto index = static_cast<size_t>(largest - o.load_compliances.begin());
-    return paragraph("The largest compliance, " + io::to_text(*largest, 4) + " J, is that of " +
-                     load_name(result, folder, sets.body, index) + ".");
+    std::string out = "The worst load, which has the largest compliance, is " +
+                      load_name(result, folder, sets.body, index) + ": " +
+                      io::to_text(*largest, 4) + " J.";
+    for (const mmc::LoadDifference& d : result.design.load_differences)
+      if (d.body == sets.body)
+        out += " The loads differ from those of the motion with the final design by " +
+               io::to_text(100 * d.loads, 2) + " % of the energy.";
+    return paragraph(out);
   }
   return "";
 }
@@ -228,8 +234,8 @@ PageSection loads_section(const RunResult& result, const RunFolder& folder) {
     out.html += paragraph(
         "A row per load set. Compliance, displacement and stress are results of the final design. "
         "The last two columns belong to the motion from which the loads were computed, which has "
-        "the design of the start of the cycle. A button shows the mechanism at the time of the "
-        "load.");
+        "the design of the start of the cycle. The buttons show the mechanism at the time of "
+        "the load, and the deformed design.");
   for (const RunFolder::LoadSets& sets : all) {
     if (all.size() > 1) out.html += "<h3>" + escaped(sets.body) + "</h3>\n";
     out.html += worst_load(sets, result, folder) + load_set_table(sets, result);

@@ -19,6 +19,7 @@ struct CaseNote {
   /// Value in TOML that was used because the file has no such key; empty if the file has it.
   std::string value;
   std::string fallback;  ///< Value in TOML that a missing key has; empty if it depends on the case.
+  std::string absence;   ///< Meaning of a missing key in words; empty for a required key.
 };
 
 /// One value of a case file, with its location in the file.
@@ -93,6 +94,9 @@ struct CaseDocument {
   /// Returns the values that differ from their defaults, as far as readers have accessed them, and
   /// all values that --set options gave.
   std::vector<Setting> settings() const;
+  /// Returns the other values of the file whose defaults depend on the case, with their defaults
+  /// in words, as far as readers have accessed them.
+  std::vector<Setting> dependent_settings() const;
   /// Returns all values that the case gives, as far as readers have accessed them.
   std::vector<Setting> values() const;
 

@@ -317,6 +317,10 @@ const std::vector<std::string>& CaseFile::former_names() const {
 
 std::vector<Setting> CaseFile::settings() const { return root_->document->settings(); }
 
+std::vector<Setting> CaseFile::dependent_settings() const {
+  return root_->document->dependent_settings();
+}
+
 std::vector<Setting> CaseFile::values() const { return root_->document->values(); }
 
 void CaseFile::finish() const { root_->document->refuse_unknown_keys(); }

@@ -172,6 +172,9 @@ class CaseFile {
   /// Returns the values that differ from their defaults, as far as readers have accessed them, and
   /// all values that overrides gave.
   std::vector<Setting> settings() const;
+  /// Returns the other values of the file whose defaults depend on the case, with their defaults
+  /// in words, as far as readers have accessed them.
+  std::vector<Setting> dependent_settings() const;
   /// Returns all values that the case gives, as far as readers have accessed them.
   std::vector<Setting> values() const;
 

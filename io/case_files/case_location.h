@@ -44,8 +44,8 @@ struct Table::Location {
 
   /// Stores a note about a key for the explained case.
   void note(const Key& key, const std::string& value) const {
-    table->note(
-        {key.name, key.sentence, value, key.fallback ? toml_text(*key.fallback) : std::string()});
+    table->note({key.name, key.sentence, value,
+                 key.fallback ? toml_text(*key.fallback) : std::string(), key.absence});
   }
 
   /// Returns the value of a key. If the file has the key, `read` converts its node and returns

@@ -51,6 +51,10 @@ bool is_changed(const CaseNode& value, const CaseNote& note) {
   return value.is_option ||
          (!note.fallback.empty() && !is_fallback(value, without_blanks(note.fallback)));
 }
+/// Tells whether the default of a value that is_changed() does not list depends on the case.
+bool has_dependent_default(const CaseNode& value, const CaseNote& note) {
+  return !value.is_option && note.fallback.empty() && !note.absence.empty();
+}
 /// The entries of a list of tables are listed, not the list.
 bool is_given(const CaseNode& value, const CaseNote&) {
   return value.entries.empty() || value.entries.front().kind != CaseNode::Kind::table;
@@ -67,7 +71,8 @@ void add_table(const CaseNode& table, const std::string& path, Wanted wanted,
       add_settings(child, full, wanted, out);
     for (const CaseNote& note : table.notes)
       if (note.key == child.key && child.kind != CaseNode::Kind::table && wanted(child, note))
-        out.push_back({full, child.shown, note.fallback, note.sentence, child.is_option});
+        out.push_back({full, child.shown, note.fallback.empty() ? note.absence : note.fallback,
+                       note.sentence, child.is_option});
   }
 }
 
@@ -85,6 +90,12 @@ void add_settings(const CaseNode& node, const std::string& path, Wanted wanted,
 std::vector<Setting> CaseDocument::settings() const {
   std::vector<Setting> out;
   add_table(root, "", is_changed, out);
+  return out;
+}
+
+std::vector<Setting> CaseDocument::dependent_settings() const {
+  std::vector<Setting> out;
+  add_table(root, "", has_dependent_default, out);
   return out;
 }
 

@@ -225,8 +225,9 @@ TEST(HeldEnd, RemaindersAreOfSecondOrder) {
                           m.cwiseProduct((s[0] * r).array().exp().matrix()), at);
       return at.f;
     };
+    // Below steps of 3e-5 the remainders have the size of the round-off of f on some processors.
     const auto taylor = optim::taylor_test(f, VectorXd::Constant(1, slope), VectorXd::Zero(1),
-                                           VectorXd::Ones(1), 3e-3, 3, 0);
+                                           VectorXd::Ones(1), 3e-3, 2, 0);
     EXPECT_NEAR(taylor.order, 2, 0.05) << taylor.table();
   }
 }
