@@ -141,8 +141,11 @@ std::string settings_table(const std::vector<io::Setting>& settings) {
 PageSection settings_section(const Scene& scene) {
   PageSection out{"settings", "Settings that differ from their defaults", ""};
   if (!scene.file) return out;
-  const std::vector<io::Setting> changed = scene.file->settings(),
-                                 dependent = scene.file->dependent_settings();
+  const std::vector<io::Setting> changed = scene.file->settings();
+  std::vector<io::Setting> dependent = scene.file->dependent_settings();
+  std::erase_if(dependent, [](const io::Setting& each) {  // sections of their own
+    return each.path == "title" || each.path.starts_with("expect.");
+  });
   out.html = changed.empty() ? paragraph("No value of the case differs from a fixed default.")
                              : settings_table(changed);
   if (!dependent.empty())

@@ -51,13 +51,15 @@ bool is_changed(const CaseNode& value, const CaseNote& note) {
   return value.is_option ||
          (!note.fallback.empty() && !is_fallback(value, without_blanks(note.fallback)));
 }
-/// Tells whether the default of a value that is_changed() does not list depends on the case.
-bool has_dependent_default(const CaseNode& value, const CaseNote& note) {
-  return !value.is_option && note.fallback.empty() && !note.absence.empty();
-}
 /// The entries of a list of tables are listed, not the list.
 bool is_given(const CaseNode& value, const CaseNote&) {
   return value.entries.empty() || value.entries.front().kind != CaseNode::Kind::table;
+}
+/// Tells whether the default of a value that is_changed() does not list depends on the
+/// case. Required values have no default.
+bool has_dependent_default(const CaseNode& value, const CaseNote& note) {
+  return !value.is_option && is_given(value, note) && note.fallback.empty() &&
+         !note.absence.empty() && !note.absence.starts_with("required");
 }
 
 void add_settings(const CaseNode& node, const std::string& path, Wanted wanted,

@@ -115,6 +115,7 @@ TEST_F(Keys, SettingsAreValuesThatDifferFromTheirDefaults) {
 [time]
 end = 1
 step = 2.5e-1
+spin = 0.05
 size = [1,  2]
 [[body]]
 angle = 0.5
@@ -128,11 +129,16 @@ every = 4
   std::vector<std::string> found;
   for (const Setting& each : given.settings()) found.push_back(each.path + " = " + each.value);
   EXPECT_EQ(found, (std::vector<std::string>{"body.size = [1, 3]", "output.every = 4"}));
+  // `end` is required; the default of `spin` depends on the case.
+  Words dependent;
+  for (const Setting& each : given.dependent_settings())
+    dependent.push_back(each.path + " = " + each.value + ": " + each.fallback);
+  EXPECT_EQ(dependent, Words{"time.spin = 0.05: a tenth of `end`"});
   Words all;
   for (const Setting& each : given.values()) all.push_back(each.path + " = " + each.value);
-  EXPECT_EQ(all,
-            (Words{"title = 'none'", "time.end = 1", "time.step = 2.5e-1", "time.size = [1,  2]",
-                   "body.angle = 0.5", "body.size = [1, 3]", "output.every = 4"}));
+  EXPECT_EQ(all, (Words{"title = 'none'", "time.end = 1", "time.step = 2.5e-1", "time.spin = 0.05",
+                        "time.size = [1,  2]", "body.angle = 0.5", "body.size = [1, 3]",
+                        "output.every = 4"}));
 }
 
 TEST_F(Keys, MessagesAreThoseOfTheDeclaration) {
