@@ -185,7 +185,7 @@ class RunPage {
     if (!out.html.empty())
       out.html =
           paragraph(
-              "The pictures show the smoothed components of each iteration, without fillets and "
+              "The pictures show the components of each iteration, without fillets and "
               "with components that carry no load. The objective and the KKT residual jump where a "
               "stage begins, because every stage has its own formulation.") +
           "<div id=\"iterations-view\" class=\"interactive scripted\"></div>\n" + out.html;
