@@ -120,8 +120,7 @@ class RunPage {
                             : "") +
           "The picture is the part for the shop: the union of the loaded components with fillets. "
           "Its outline for cutting is in the .dxf file, and its solid for CAD programs in the "
-          ".step "
-          "file (see Files below). The unit of length is mm" +
+          ".step file (see Files below). The unit of length is mm" +
           (unit == "mm" ? "." : " in .step files, and " + unit + " in .dxf and .stl files."));
     for (const VerifiedOutline& v : result_.design.outlines)
       if (const std::string svg = plots() ? stress_plot(v) : ""; !svg.empty())
@@ -184,10 +183,12 @@ class RunPage {
                     "</summary><div class=\"design\">" + figure(p.start) + "</div></details>\n";
     if (!out.html.empty())
       out.html =
-          paragraph(
-              "The pictures show the components of each iteration, without fillets and "
-              "with components that carry no load. The objective and the KKT residual jump where a "
-              "stage begins, because every stage has its own formulation.") +
+          (folder_.histories().empty()
+               ? std::string()
+               : paragraph("The pictures show the components of each iteration, without fillets "
+                           "and with components that carry no load. The objective and the KKT "
+                           "residual jump where a stage begins, because every stage has its own "
+                           "formulation.")) +
           "<div id=\"iterations-view\" class=\"interactive scripted\"></div>\n" + out.html;
     return out;
   }

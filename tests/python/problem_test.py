@@ -285,7 +285,7 @@ class Solutions(unittest.TestCase):
             self.assertEqual(float(compliance), run.designs[body].results["compliance"])
 
     def test_solve_tells_the_violation_of_the_crisp_design(self):
-        # Without iterations the designs are the initial bars, which fill more than the limit allows.
+        # After one iteration the bars still fill more than the limit allows.
         p = flexmorph.load("short_beam", set={**COARSE, "design.max_volume": 0.2}).problem()
         for stages in (False, True):
             found = p.solve("mma", stages=stages, max_iterations=1)

@@ -219,10 +219,14 @@ Features features_of(const BodyProblem& problem, std::span<const Region> regions
 
 std::optional<double> given_width_of(const BodyProblem& problem, std::span<const Region> regions) {
   constexpr double kWidthTolerance = 0.98;  // Polygons lie up to 0.01 cells within round outlines.
-  if (!(problem.widths.solid > 0)) return {};
+  const Region domain = domain_of(problem);
+  // Without these, is_given() holds nowhere, and the medial axis need not be computed again.
+  const bool can_be_given =
+      !problem.solid.empty() || !problem.empty.empty() || !domain.holes.empty();
+  if (!(problem.widths.solid > 0) || !can_be_given) return {};
   std::optional<double> out;
   for (const LengthScaleViolation& location :
-       length_scale_violations(regions, domain_of(problem), kWidthTolerance * problem.widths.solid))
+       length_scale_violations(regions, domain, kWidthTolerance * problem.widths.solid))
     if (location.solid && is_given(problem, location) && !(out && *out <= location.width))
       out = location.width;
   return out;
