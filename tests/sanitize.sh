@@ -1,5 +1,5 @@
 #!/bin/sh
-# tests/sanitize.sh [debug | thread] : builds with sanitizers and runs all tests but the benchmarks.
+# tests/sanitize.sh [debug | thread] : builds with sanitizers and runs the tests of tests/run.sh.
 # debug: addresses, undefined behaviour and assertions (build-debug/). thread: data races, with clang
 # (build-thread/); it needs Debian's clang-16, libclang-rt-16-dev and libomp-16-dev.
 set -eu

@@ -109,7 +109,7 @@ void BorderedCholesky::Impl::number_unknowns(const SparseMatrix& a) {
   for (size_t g = 0; g < n_groups; ++g)
     std::fill(group_of.begin() + first[g], group_of.begin() + first[g + 1], static_cast<int>(g));
   for (size_t g = 0; g < n_groups; ++g) {
-    sides[g] = border.contains[at(first[g])];
+    sides[g] = border.contains[at(first[g])] != 0;
     bool itself = false;
     for (int p = a.outerIndexPtr()[first[g]]; p < a.outerIndexPtr()[first[g] + 1]; ++p) {
       const int other = group_of[at(a.innerIndexPtr()[p])];
@@ -253,12 +253,12 @@ void BorderedCholesky::Impl::forward() {
   const Supernodes& b = factor->blocks();
   for (int s = 0; s < b.n_blocks(); ++s) {
     const int first = b.first[at(s)], width = b.width(s), height = b.height(s);
-    const int* below = b.below(s) - width;
+    const int* below = b.below(s);
     std::copy_n(permuted.data() + first, width, block.data());
     std::fill(block.data() + width, block.data() + height, 0.0);
     forward_block(factor->block(s), width, height, block.data());
     std::copy_n(block.data(), width, permuted.data() + first);
-    for (int i = width; i < height; ++i) permuted[below[i]] += block[i];
+    for (int i = width; i < height; ++i) permuted[below[i - width]] += block[i];
   }
 }
 
@@ -266,9 +266,9 @@ void BorderedCholesky::Impl::backward() {
   const Supernodes& b = factor->blocks();
   for (int s = b.n_blocks(); s-- > 0;) {
     const int first = b.first[at(s)], width = b.width(s), height = b.height(s);
-    const int* below = b.below(s) - width;
+    const int* below = b.below(s);
     std::copy_n(permuted.data() + first, width, block.data());
-    for (int i = width; i < height; ++i) block[i] = permuted[below[i]];
+    for (int i = width; i < height; ++i) block[i] = permuted[below[i - width]];
     backward_block(factor->block(s), width, height, block.data());
     std::copy_n(block.data(), width, permuted.data() + first);
   }
