@@ -61,8 +61,7 @@ int parse_and_run(int argc, char** argv) {
        {commands_of_runs, commands_of_studies, commands_of_folders, commands_of_texts})
     for (Command& command : make(app)) commands.push_back(std::move(command));
   CLI::App* help = app.add_subcommand("help", "prints this list");
-  const std::string all_help =
-      shown_help(app);  // after parsing it would be the help of one command
+  std::string all_help = shown_help(app);  // after parsing it would be the help of one command
   commands.push_back(printing(help, [&] { return all_help; }));
   if (argc > 1)
     refuse_unknown_command(app, argv[1]);

@@ -124,13 +124,13 @@ std::unique_ptr<ForceElement> make_torsion_spring(std::string name, MarkerLocati
 /// potential where it is constant in the world frame, and a mean force if it does not turn and its
 /// marker is not shifted along its axis.
 /// @throws Error (input) for a number that is not finite and for another number of components
-std::unique_ptr<ForceElement> make_point_force(std::string name, MarkerLocation at,
+std::unique_ptr<ForceElement> make_point_force(const std::string& name, MarkerLocation at,
                                                const LoadLaw& force, bool turns = false);
 
 /// Creates a torque on a rigid body (1), counter-clockwise [N m]; Model::scale_loads() scales it.
 /// It has no mean force.
 /// @throws Error (input) for a number that is not finite and for another number of components
-std::unique_ptr<ForceElement> make_torque(std::string name, MarkerLocation at,
+std::unique_ptr<ForceElement> make_torque(const std::string& name, MarkerLocation at,
                                           const LoadLaw& torque);
 
 }  // namespace flexmorph::fem

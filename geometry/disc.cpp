@@ -7,7 +7,7 @@
 namespace flexmorph {
 
 Disc disc_like(const std::vector<Vec2>& ring) {
-  const Vec2 origin = ring.front();  // near the polygon, so that products stay small
+  const Vec2& origin = ring.front();  // near the polygon, so that products stay small
   double twice_area = 0;
   Vec2 moment = Vec2::Zero();
   for (size_t k = 0; k < ring.size(); ++k) {

@@ -1,7 +1,7 @@
 #!/bin/sh
-# tests/strict.sh : compiles everything with clang, reads every file with clang-tidy, and takes every
-# warning of either as an error (preset `tidy`, build-tidy/). It needs Debian's clang-16,
-# clang-tidy-16 and libomp-16-dev, because clang 14 has no std::source_location.
+# tests/strict.sh : compiles everything with clang, reads every file of the program with clang-tidy,
+# and takes every warning of either as an error (preset `tidy`, build-tidy/). It needs Debian's
+# clang-16, clang-tidy-16 and libomp-16-dev, because clang 14 has no std::source_location.
 set -eu
 cd "$(dirname "$0")/.."
 case "${1-}" in

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -76,6 +77,7 @@ Overrides refine_design(const BodyDesign& d, const io::Table& t, size_t index, i
 Levels cell_levels(const Scene& scene, const io::CaseFile& file) {
   int own = 0;
   for (const BodyDesign& d : scene.designs) own = std::gcd(own, std::gcd(d.grid.nx, d.grid.ny));
+  assert(own > 0);
   const std::vector<io::Table> tables = file.root().tables(tables::kDesign);
   Levels out;
   for (const int quarters : {1, 2, 3, 4, 6, 8, 10, 12, 16, 24, 32}) {

@@ -259,7 +259,7 @@ Levels rho_levels(const Scene& scene, const io::CaseFile&) {
 std::string no_integrator(const Scene& scene, Part part) {
   if (scene.has_eulerian_lines()) return "free mesh lines need \"generalized_alpha\"";
   if (scene.time.tolerance || is_explicit(scene)) return "the case uses adaptive steps";
-  const std::string no_series = no_time_or_design(scene, part);
+  std::string no_series = no_time_or_design(scene, part);
   if (no_series.empty() && !fem::has_mean_forces(build_mechanism(scene).model))
     return "a term or a force element does not support \"energy_momentum\"";
   return no_series;

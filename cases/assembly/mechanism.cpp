@@ -179,7 +179,7 @@ const Hub& hub_of(const Scene& scene, const Joint& joint) {
 
 fem::FrameDrive hub_drive(const Scene& scene, const Joint& joint) {
   if (joint.to.empty()) return at_rest(joint.position, joint.angle);
-  const fem::FrameDrive hub = drive_of(scene, hub_of(scene, joint));
+  fem::FrameDrive hub = drive_of(scene, hub_of(scene, joint));
   if (joint.angle == 0) return hub;
   return [hub, angle = joint.angle](double t) {
     fem::FrameMotion f = hub(t);

@@ -180,7 +180,7 @@ std::vector<Vec2> forces_at(const Scene& scene, const Grid& grid, const PlaneFor
   std::vector<Vec2> points;
   for (const int node : location.nodes)
     points.push_back(grid.node_position(node / (grid.ny + 1), node % (grid.ny + 1)));
-  const std::vector<Vec2> out =
+  std::vector<Vec2> out =
       verification::spread({force.force, force.moment, force.bearing, force.location.disc.center},
                            points, location.shares);
   if (out.empty())

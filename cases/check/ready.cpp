@@ -26,9 +26,9 @@ fs::path own_file(const void* function) {
   Dl_info found{};
   const bool known = dladdr(function, &found) != 0 && found.dli_fname != nullptr;
   std::error_code none;  // ignored: some systems have no /proc
-  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  fs::path program = fs::read_symlink("/proc/self/exe", none);
   if (!known) return program;
-  const fs::path file = fs::canonical(found.dli_fname, none);
+  fs::path file = fs::canonical(found.dli_fname, none);
   return none ? program : file;
 }
 

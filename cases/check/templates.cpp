@@ -93,7 +93,7 @@ std::string write_new_case(const std::string& name, const std::string& kind) {
       name.ends_with(kEnding) ? name.substr(0, name.size() - kEnding.size()) : name;
   require_name(stem);
   const std::string text = io::read_regular_file(find_template(kind), "a case");
-  const std::string path = stem + kEnding;
+  std::string path = stem + kEnding;
   write_only_new(path, "# " + path + " was written by: flexmorph new " + stem + " --kind " + kind +
                            "\n# What it contains, and what it costs: flexmorph check " + path +
                            "\n# The run, with its results in runs/" + stem + ": flexmorph run " +

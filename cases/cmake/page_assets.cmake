@@ -22,9 +22,12 @@ foreach(entry ${files})
   endif()
   string(APPEND entries "      {\"${name}\", R\"_page_(${text})_page_\"},\n")
 endforeach()
+# Every compiler that is used accepts texts longer than the 65536 characters of the standard.
 file(WRITE "${OUTPUT}" "#include \"cases/output/page/assets.h\"
 
 #include <map>
+
+#pragma GCC diagnostic ignored \"-Woverlength-strings\"
 
 namespace flexmorph::cases {
 

@@ -107,7 +107,10 @@ void compute_in_thread(const std::function<void()>& work, int threads, const Sto
     std::unique_lock waiting(end.lock);
     while (!end.signal.wait_for(waiting, kSignals, [&] { return end.reached; })) {
       waiting.unlock();
-      if (!interruption && (interruption = exception_of_signals())) flag.stop();
+      if (!interruption) {
+        interruption = exception_of_signals();
+        if (interruption) flag.stop();
+      }
       waiting.lock();
     }
     waiting.unlock();

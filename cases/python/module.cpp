@@ -1,5 +1,7 @@
 #include <omp.h>
 
+#include <utility>
+
 #include "cases/assembly/scene_motion.h"
 #include "cases/keys/book.h"
 #include "cases/python/bindings.h"
@@ -52,7 +54,7 @@ void bind_process(py::module_& m) {
   m.attr("NumericalError") = py::none();
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const Error& error) {
       const py::module_ self = py::module_::import("flexmorph._core");
       const bool input = error.kind() == Error::Kind::input;

@@ -33,7 +33,8 @@ class Functions {
 /// Returns an object that exists until the process ends, as rows of tables must.
 template <class T>
 T& kept(T value) {
-  return *new T(std::move(value));
+  static auto& all = *new std::deque<T>;
+  return all.emplace_back(std::move(value));
 }
 
 // --- responses

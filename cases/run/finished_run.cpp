@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 
 std::string finished_case(const std::string& directory) {
   const std::string absolute = fs::absolute(directory).string();
-  const std::string kept = absolute + "/case.toml", results = absolute + "/run.json";
+  std::string kept = absolute + "/case.toml";
+  const std::string results = absolute + "/run.json";
   for (const std::string& path : {kept, results})
     if (!fs::is_regular_file(path))
       throw Error::input("'" + directory +

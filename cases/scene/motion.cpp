@@ -21,8 +21,6 @@ using io::positive;
 using io::Table;
 using io::to_text;
 
-constexpr int kMaxElements = 100'000;
-
 const io::Key& kEnd = io::key("time", "end")
                           .number(positive("an end time", "s"))
                           .description("End time of the run, which begins at 0.");

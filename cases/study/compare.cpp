@@ -17,7 +17,7 @@ namespace {
 /// Returns the names of the compared optimizers.
 /// @throws Error (input) for an unknown name, or a repeated one.
 std::vector<std::string> optimizers_of(const CompareOptions& options) {
-  const std::vector<std::string> known = optim::optimizer_names();
+  std::vector<std::string> known = optim::optimizer_names();
   if (options.optimizers.empty()) return known;
   for (const std::string& name : options.optimizers) {
     if (std::find(known.begin(), known.end(), name) == known.end())

@@ -95,7 +95,7 @@ void write(const std::vector<Result>& results, const std::string& directory,
   const auto rows = table_of(results);
   std::vector<std::vector<io::Cell>> cells;
   for (size_t i = 1; i < rows.size(); ++i) cells.emplace_back(rows[i].begin(), rows[i].end());
-  io::CsvWriter(directory + "/compare.csv", kColumns, cells);
+  const io::CsvWriter table(directory + "/compare.csv", kColumns, cells);
   io::write_file(
       directory + "/compare.md",
       "# " + name + "\n\n" + io::markdown_table(rows) +

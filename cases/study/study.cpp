@@ -96,7 +96,7 @@ std::string completed_text(const std::string& log) {
   for (std::string word; in >> word;) words += (words.empty() ? "" : " ") + word;
   const size_t end = words.rfind(kShare);
   if (end == std::string::npos) return "0 %";
-  const size_t begin = words.find_last_of(" ", end - 1) + 1;
+  const size_t begin = words.find_last_of(' ', end - 1) + 1;
   return words.substr(begin, end - begin) + " %";
 }
 

@@ -1,6 +1,7 @@
 #include "fem/dynamics/motion.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -338,6 +339,7 @@ class Run {
     Body* body = nullptr;
     for (Body& b : model_.bodies())
       if (b.name == growth.body) body = &b;
+    assert(body != nullptr);
     MeshEvent event;
     event.time = x_.t;
     event.body = growth.body;

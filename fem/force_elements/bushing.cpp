@@ -9,7 +9,7 @@ namespace {
 
 class Bushing final : public PairForceElement, public TurningForceElement {
  public:
-  Bushing(std::string name, MarkerLocation a, MarkerLocation b, const BushingData& data)
+  Bushing(const std::string& name, MarkerLocation a, MarkerLocation b, const BushingData& data)
       : PairForceElement(name, std::move(a), std::move(b), parts(data), true), data_(data) {
     const double numbers[] = {data.stiffness.x(), data.stiffness.y(),     data.damping.x(),
                               data.damping.y(),   data.torsion_stiffness, data.torsion_damping};

@@ -102,13 +102,13 @@ class Torque final : public LocationLoad {
 
 }  // namespace
 
-std::unique_ptr<ForceElement> make_point_force(std::string name, MarkerLocation at,
+std::unique_ptr<ForceElement> make_point_force(const std::string& name, MarkerLocation at,
                                                const LoadLaw& force, bool turns) {
   if (turns) return std::make_unique<TurningForce>(name, std::move(at), force);
   return std::make_unique<PointForce>(name, std::move(at), force);
 }
 
-std::unique_ptr<ForceElement> make_torque(std::string name, MarkerLocation at,
+std::unique_ptr<ForceElement> make_torque(const std::string& name, MarkerLocation at,
                                           const LoadLaw& torque) {
   return std::make_unique<Torque>(name, std::move(at), torque);
 }

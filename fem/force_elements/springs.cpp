@@ -40,7 +40,7 @@ Vec2 difference(const Values& y) { return y.segment<2>(kPositionB) - y.segment<2
 ///   s_d = N e = k (1 - l₀/l) d + c (e · ḋ) e,   V = ½ k (l - l₀)²
 class Spring final : public PairForceElement, public MeanForceElement {
  public:
-  Spring(std::string name, MarkerLocation a, MarkerLocation b, const SpringData& spring)
+  Spring(const std::string& name, MarkerLocation a, MarkerLocation b, const SpringData& spring)
       : PairForceElement(name, std::move(a), std::move(b), {kPositionA, kPositionB}, true),
         spring_(spring) {
     checked(name, "stiffness", spring.stiffness, 0);
@@ -154,7 +154,7 @@ struct Turn {
 /// whole turns; their number is continued from the last accepted step.
 class TorsionSpring final : public PairForceElement, public TurningForceElement {
  public:
-  TorsionSpring(std::string name, MarkerLocation a, MarkerLocation b,
+  TorsionSpring(const std::string& name, MarkerLocation a, MarkerLocation b,
                 const TorsionSpringData& spring)
       : PairForceElement(name, std::move(a), std::move(b), {MarkerPair::kAxisA, MarkerPair::kAxisB},
                          true),

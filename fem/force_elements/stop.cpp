@@ -11,7 +11,7 @@ using Coordinate = StopData::Coordinate;
 
 class UnilateralStop final : public PairForceElement, public TurningForceElement {
  public:
-  UnilateralStop(std::string name, MarkerLocation a, MarkerLocation b, const StopData& data)
+  UnilateralStop(const std::string& name, MarkerLocation a, MarkerLocation b, const StopData& data)
       : PairForceElement(name, std::move(a), std::move(b), parts(data.coordinate), true),
         data_(data) {
     const auto size = [](double x) { return x >= 0 && std::isfinite(x); };

@@ -154,7 +154,7 @@ class AngleDrive final : public PairJoint {
 
 class Distance final : public PairJoint {
  public:
-  Distance(std::string name, MarkerLocation a, MarkerLocation b,
+  Distance(const std::string& name, MarkerLocation a, MarkerLocation b,
            std::function<Motion(double)> motion)
       : PairJoint(name, std::move(a), std::move(b),
                   {{bits({kPositionA, kPositionB})},
@@ -195,7 +195,8 @@ class Distance final : public PairJoint {
 
 class PointDriven final : public PairJoint {
  public:
-  PointDriven(std::string name, MarkerLocation a, PointDrive point, std::vector<int> components)
+  PointDriven(const std::string& name, MarkerLocation a, PointDrive point,
+              std::vector<int> components)
       : PairJoint(name, std::move(a), {}, {rows_of(name, components)}),
         point_(std::move(point)),
         components_(std::move(components)) {

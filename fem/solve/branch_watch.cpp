@@ -32,12 +32,13 @@ SparseMatrix rows_of_rigid_bodies(const Model& model, const SparseMatrix& j) {
 
 /// Returns J with a small number for every entry that is zero, so that the rows of a loop are found
 /// in positions where entries vanish, too.
-SparseMatrix without_zeros(SparseMatrix j) {
+SparseMatrix without_zeros(const SparseMatrix& j) {
+  SparseMatrix out = j;
   constexpr double kSmall = 1e-3;  // too small to separate a row from others, see entangled_rows()
-  for (int column = 0; column < j.cols(); ++column)
-    for (SparseMatrix::InnerIterator it(j, column); it; ++it)
+  for (int column = 0; column < out.cols(); ++column)
+    for (SparseMatrix::InnerIterator it(out, column); it; ++it)
       if (it.value() == 0) it.valueRef() = kSmall;
-  return j;
+  return out;
 }
 
 /// Removes the rows without entries from a list of rows.

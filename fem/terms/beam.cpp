@@ -279,9 +279,9 @@ constexpr Kind kGcm = {"gcm", Mechanics::general, BeamStrains::assumed},
                kEcmFull = {"ecm_full", Mechanics::enhanced, BeamStrains::displacement};
 
 template <const Kind& kind>
-TermRow row_of(std::string sentence) {
+TermRow row_of(const char* sentence) {
   return {.name = kind.name,
-          .sentence = std::move(sentence),
+          .sentence = sentence,
           .role = "beam",
           .domains = {TermDomain::beam},
           .required_in = {TermDomain::beam},

@@ -59,7 +59,7 @@ struct Uniform {
 /// Returns the matrix that gives ε̄(x) from the samples.
 OfSamples assumed(double xi, const Axes& axes, const Uniform& uniform) {
   constexpr double kRoundOff = 1e-14;
-  const OfSamples by_components = interpolation(xi);
+  OfSamples by_components = interpolation(xi);
   const Eigen::Matrix3d missed = turned(axes) - by_components * uniform.at_samples;
   // The sections do not rotate.
   if (missed.lpNorm<Eigen::Infinity>() < kRoundOff) return by_components;

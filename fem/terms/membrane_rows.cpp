@@ -13,11 +13,11 @@ std::vector<ElasticPart> membrane_parts(const PlaneSection& section, Strains str
 namespace {
 
 template <Strains kStrains>
-TermRow row(const char* name, const char* sentence, std::vector<TermDomain> domains) {
+TermRow row(const char* name, const char* sentence, const std::vector<TermDomain>& domains) {
   return {.name = name,
           .sentence = sentence,
           .role = "membrane",
-          .domains = std::move(domains),
+          .domains = domains,
           .required_in = {TermDomain::space},
           .designable = kStrains == Strains::displacement,
           .on_cells = kStrains == Strains::displacement,

@@ -2,6 +2,7 @@
 
 #include <Eigen/Sparse>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -176,6 +177,7 @@ class Smoothing {
 
   Ring of(const Ring& ring) const {
     const std::size_t n = ring.size();
+    assert(n > 0);
     std::vector<std::size_t> stay;
     for (std::size_t k = 0; k < n; ++k)
       if (fixed_.has(ring[k])) stay.push_back(k);
@@ -254,7 +256,10 @@ std::vector<Region> smoothed(std::span<const Region> regions,
     }
     Region smooth{smoothing.of(region.outer), {}};
     for (const Ring& hole : region.holes) smooth.holes.push_back(smoothing.of(hole));
-    out.push_back(check && !is_simple(smooth) ? region : std::move(smooth));
+    if (check && !is_simple(smooth))
+      out.push_back(region);
+    else
+      out.push_back(std::move(smooth));
   }
   return out;
 }

@@ -239,7 +239,7 @@ std::vector<std::string> entry_paths(const CaseNode& list, const std::string& li
 }
 
 std::string nearest(const std::string& word, std::span<const std::string> known) {
-  if (const std::string term = word_for_term(word, known); !term.empty()) return term;
+  if (std::string term = word_for_term(word, known); !term.empty()) return term;
   std::string best;
   size_t best_distance = std::max<size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : known) {

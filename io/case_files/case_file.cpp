@@ -91,18 +91,18 @@ bool Table::boolean(const Key& key, std::optional<bool> computed) const {
       });
 }
 
-std::string Table::string(const Key& key, std::optional<std::string> computed) const {
+std::string Table::string(const Key& key, const std::optional<std::string>& computed) const {
   const Form& form = location_->form(key, Form::Kind::text);
   return location_->value<std::string>(key, computed, form.quantity.noun + " is a text in quotes",
                                        read_text);
 }
 
-std::string Table::choice(const Key& key, std::optional<std::string> computed) const {
-  return choice(key, key.form(Form::Kind::word).words(), std::move(computed));
+std::string Table::choice(const Key& key, const std::optional<std::string>& computed) const {
+  return choice(key, key.form(Form::Kind::word).words(), computed);
 }
 
 std::string Table::choice(const Key& key, std::span<const std::string> allowed,
-                          std::optional<std::string> computed) const {
+                          const std::optional<std::string>& computed) const {
   const std::string& noun = location_->form(key, Form::Kind::word).quantity.noun;
   const auto read = [&](const CaseNode& node) -> std::optional<std::string> {
     if (node.kind != Kind::text) return {};
@@ -235,7 +235,7 @@ void Table::record(const Key& key, const Value& value) const {
 }
 
 std::string Table::path_of(const Key& key) const {
-  const std::string name = string(key);
+  std::string name = string(key);
   const CaseNode* node = location_->find(key.name);
   if (node != nullptr && node->is_option) return name;
   return (std::filesystem::path(location_->document->path).parent_path() / name).string();

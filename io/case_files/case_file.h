@@ -58,12 +58,12 @@ class Table {
   /// Returns a boolean value.
   bool boolean(const Key& key, std::optional<bool> computed = {}) const;
   /// Returns a string of any content.
-  std::string string(const Key& key, std::optional<std::string> computed = {}) const;
+  std::string string(const Key& key, const std::optional<std::string>& computed = {}) const;
   /// Returns one of the words with which the key is declared.
-  std::string choice(const Key& key, std::optional<std::string> computed = {}) const;
+  std::string choice(const Key& key, const std::optional<std::string>& computed = {}) const;
   /// Returns one of the names in `allowed`, which depend on the case.
   std::string choice(const Key& key, std::span<const std::string> allowed,
-                     std::optional<std::string> computed = {}) const;
+                     const std::optional<std::string>& computed = {}) const;
   /// Returns the value that the word of a key stands for.
   template <class T>
   T choice(const Choice<T>& choice, std::optional<T> computed = {}) const {

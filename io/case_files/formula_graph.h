@@ -55,7 +55,7 @@ struct Formula::Program {
   void run(double t, double* x) const;
 };
 
-class Graph;
+struct Graph;
 
 /// A node of an expression graph. Functions of nodes create new nodes. They evaluate operations on
 /// constants, create equal operations only once, and create neither sums with 0 nor products with 0

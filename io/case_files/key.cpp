@@ -200,13 +200,13 @@ Key Key::within(double lower, double upper) const {
   return out;
 }
 
-Key Key::called(std::string noun) const {
+Key Key::called(const std::string& noun) const {
   Key out = *this;
   for (Form& form : out.forms) form.quantity.noun = noun;
   return out;
 }
 
-Key Key::measured_in(std::string unit) const {
+Key Key::measured_in(const std::string& unit) const {
   Key out = *this;
   for (Form& form : out.forms) form.quantity.unit = unit;
   return out;

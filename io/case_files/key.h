@@ -148,9 +148,9 @@ class Key {
   /// depend on other keys.
   Key within(double lower, double upper) const;
   /// Returns a copy of the key with another noun.
-  Key called(std::string noun) const;
+  Key called(const std::string& noun) const;
   /// Returns a copy of the key with another unit.
-  Key measured_in(std::string unit) const;
+  Key measured_in(const std::string& unit) const;
   /// Returns a copy of the key with a fixed number of entries.
   Key counted(int entries) const;
   /// Returns a copy of the key with a name that the user chose, for tables with free keys.

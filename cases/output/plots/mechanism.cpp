@@ -84,8 +84,9 @@ io::Figure error_plot(const Scene& scene, const MotionRecord& design,
     io::Panel panel;
     panel.x.label = kTime;
     panel.y.label = label;
+    const std::string column = body + quantity;
     const auto add = [&](const char* name, const MotionRecord& motion, bool second) {
-      if (const auto* values = motion.table.find(body + quantity)) {
+      if (const auto* values = motion.table.find(column)) {
         io::Curve curve{name, motion.time(), *values};
         curve.dashed = second;
         panel.curves.push_back(std::move(curve));

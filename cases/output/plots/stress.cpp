@@ -27,8 +27,10 @@ double all_but_peaks(const verification::OutlineVerification& j, const std::vect
   }
   std::sort(parts.begin(), parts.end(), std::greater<>());
   double above = 0;
-  for (const auto& [stress, own] : parts)
-    if ((above += own) > kPeaks * area) return stress;
+  for (const auto& [stress, own] : parts) {
+    above += own;
+    if (above > kPeaks * area) return stress;
+  }
   return 0;
 }
 

@@ -87,7 +87,7 @@ std::string no_gradient_because(const Scene& scene) {
     return "the times at which meshes with free material lines change depend on the design "
            "([[body.line]])";
   if (scene.has_heat()) return "it is not implemented for heated bodies ([body.heat])";
-  if (const std::string why = unmatched_cells(scene, 1); !why.empty()) return why;
+  if (std::string why = unmatched_cells(scene, 1); !why.empty()) return why;
   for (const BodyDesign& design : scene.designs) {
     const Body& body = scene.body(design.body);
     if (!body.lines.empty()) return "'" + body.name + "' has given mesh lines ([[body.line]])";

@@ -121,9 +121,9 @@ Ring read_region(const Table& t, const mmc::Plate& plate, double tolerance) {
   if (t.has(kStrip)) return read_strip(t, grid);
   if (t.has(kStripCells)) t.fail(kStripCells, "this key needs a `strip`");
   const io::Key& shape = t.has(kBox) ? kBox : t.has(kDisc) ? kDisc : kPolygon;
-  const Ring ring = t.has(kBox)    ? read_box(t)
-                    : t.has(kDisc) ? read_disc(t, grid, tolerance)
-                                   : read_polygon(t, kPolygon);
+  Ring ring = t.has(kBox)    ? read_box(t)
+              : t.has(kDisc) ? read_disc(t, grid, tolerance)
+                             : read_polygon(t, kPolygon);
   if (count(cells_in(plate, {&ring, 1})) == 0)
     t.fail(shape, "a " + shape.name + " contains the centre of at least one cell; the domain is [" +
                       to_text(grid.x0) + ", " + to_text(grid.x0 + grid.width) + "] x [" +

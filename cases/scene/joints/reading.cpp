@@ -179,7 +179,7 @@ int line_of(const std::string& edge, const Body& body) {
 
 std::string read_edge(const Table& t, const Key& key, const Body& body,
                       const std::vector<std::string>& names) {
-  const std::string edge = t.string(key);
+  std::string edge = t.string(key);
   if (std::find(names.begin(), names.end(), edge) != names.end()) return edge;
   const bool moves = body.flow || body.mesh_changes();
   if (!moves && line_of(edge, body) >= 0) return edge;

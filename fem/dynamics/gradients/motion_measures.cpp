@@ -142,11 +142,10 @@ class JointForce final : public MotionMeasure {
     model.constraints(x, c);
     const Body& body = model.body(body_);
     Vec2 out(0, 0);
-    std::vector<signed char> axis(static_cast<size_t>(model.n_dofs()), -1);
+    std::vector<int> axis(static_cast<size_t>(model.n_dofs()), -1);
     for (int k = 0; k < body.element->n_vectors(); ++k)
       for (int d = 0; d < 2 && body.element->is_position(k); ++d)
-        axis[static_cast<size_t>(body.first_dof + body.element->dim() * k + d)] =
-            static_cast<signed char>(d);
+        axis[static_cast<size_t>(body.first_dof + body.element->dim() * k + d)] = d;
     for (const auto& entry : c.jacobian)
       if (entry.row() >= first && entry.row() < last)
         if (const int d = axis[static_cast<size_t>(entry.col())]; d >= 0)

@@ -1,6 +1,7 @@
 #include "fem/solve/factorization/multifrontal.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -118,13 +119,14 @@ int Multifrontal::factorize(MatrixXd* border) {
     if (failed < 0) failed = smallest_pivot(s);
     if (failed >= 0) return b.first[static_cast<std::size_t>(s)] + failed;
     if (b.parent[static_cast<std::size_t>(s)] < 0) {
+      assert(size == 0 || border != nullptr);
       if (size > 0) add_to_border(s, own, *border);
       top = bottom;
       continue;
     }
-    double* home = stack_.data() + bottom;
+    double* moved = stack_.data() + bottom;
     for (std::size_t c = 0; bottom != top && c < n_below; ++c)  // the lower triangle
-      std::copy(own + c * n_below + c, own + (c + 1) * n_below, home + c * n_below + c);
+      std::copy(own + c * n_below + c, own + (c + 1) * n_below, moved + c * n_below + c);
     top = bottom + size;
     waiting_.push_back(s);
   }
@@ -150,7 +152,7 @@ double Multifrontal::condition() const {
   }
   SparseMatrix full(size(), size());
   full.setFromTriplets(entries.begin(), entries.end());
-  return condition_estimate(std::move(full));
+  return condition_estimate(full);
 }
 
 }  // namespace flexmorph::fem

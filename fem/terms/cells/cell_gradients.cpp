@@ -37,9 +37,9 @@ Shares shares(const gram::OneOf& w, const VoidCells& cells, const std::vector<Pa
 
 /// Full material of one design cell in an element: its W, and its fraction of the area.
 struct CellPart {
-  std::vector<Pack> w;
   VoidCells cells;
   double share = 0;
+  std::vector<Pack> w;
 };
 
 CellPart part_in(const Element& element, const ScaleFactors& factors,

@@ -1,6 +1,7 @@
 #include "optim/mmc/cycles/stages.h"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <utility>
 
@@ -109,6 +110,7 @@ StageResult at_band(StageRunner& run, const StageResult& from, size_t band,
                     const StageBudget& share) {
   size_t most = 0;
   for (const Subproblem& p : run.parts()) most = std::max(most, p.problem.bands.size());
+  assert(most > 0);
   std::vector<Formulation> formulations;
   for (const Subproblem& p : run.parts())
     formulations.push_back(nominal(p.problem, band * p.problem.bands.size() / most));

@@ -125,7 +125,7 @@ bool touches(const Grid& grid, const Region& region, int cell) {
   const Vec2 size(grid.dx(), grid.dy());
   const Vec2 corner = grid.cell_center(cell / grid.ny, cell % grid.ny) - 0.5 * size;
   for (int k = 0; k < kPoints * kPoints; ++k) {
-    const Vec2 share(k % kPoints / (kPoints - 1.0), k / kPoints / (kPoints - 1.0));
+    const Vec2 share = Vec2(k % kPoints, k / kPoints) / (kPoints - 1);
     if (contains(region, corner + share.cwiseProduct(size))) return true;
   }
   return false;

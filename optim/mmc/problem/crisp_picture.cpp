@@ -35,7 +35,8 @@ class OutlineMotion {
     const std::vector<Vec2> ring = outline_within(components_[static_cast<size_t>(index)],
                                                   tdf_.min_half_thickness, kOff * cell_);
     for (size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 a = ring[k], side = ring[(k + 1) % ring.size()] - a;
+      const Vec2& a = ring[k];
+      const Vec2 side = ring[(k + 1) % ring.size()] - a;
       const double length = side.norm();
       const int pieces = std::max(1, static_cast<int>(std::ceil(length / (kPiece * cell_))));
       for (int p = 0; p < pieces; ++p)
