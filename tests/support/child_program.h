@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/sanitizers.h"
+
 /// Child processes of tests, each with a limit of wall-clock time.
 namespace flexmorph::testing {
 
@@ -47,8 +49,9 @@ class ChildProgram {
   /// Waits for the end of the process and kills its process group if a time limit [s] is exceeded.
   ChildEnd end(double seconds = kSeconds);
 
-  /// Default time limit [s]; a test of the suite "gate" may take at most 180 s.
-  static constexpr double kSeconds = 150;
+  /// Default time limit [s]; a test of the suite "gate" may take at most 180 s,
+  /// and ten times as long with a sanitizer.
+  static constexpr double kSeconds = kSanitized ? 1500 : 150;
 
  private:
   std::string folder_;
