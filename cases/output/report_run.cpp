@@ -6,6 +6,7 @@
 
 #include "cases/output/page/html.h"
 #include "cases/output/report_tables.h"
+#include "cases/scene/tables.h"
 #include "cases/scene/version.h"
 #include "fem/solve/linear_solver.h"
 #include "io/case_files/case_parser.h"
@@ -143,9 +144,9 @@ PageSection settings_section(const Scene& scene) {
   if (!scene.file) return out;
   const std::vector<io::Setting> changed = scene.file->settings();
   std::vector<io::Setting> dependent = scene.file->dependent_settings();
-  std::erase_if(dependent, [](const io::Setting& each) {  // sections of their own
-    return each.path == "title" || each.path.starts_with("expect.");
-  });
+  // Their sections are others.
+  std::erase_if(dependent,
+                [](const io::Setting& each) { return tables::only_describes(each.path); });
   out.html = changed.empty() ? paragraph("No value of the case differs from a fixed default.")
                              : settings_table(changed);
   if (!dependent.empty())

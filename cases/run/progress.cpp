@@ -27,7 +27,7 @@ Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) 
 }
 
 Progress::Progress(std::function<void(const std::string&)> told)
-    : quiet_(true), terminal_(false), told_(told ? std::move(told) : [](const std::string&) {}) {}
+    : quiet_(!told), terminal_(false), told_(told ? std::move(told) : [](const std::string&) {}) {}
 
 Progress::~Progress() {
   if (repetition_.joinable()) {
@@ -165,6 +165,8 @@ void Progress::print(const std::string& text) {
     const int width = static_cast<int>(io::screen_width()) - 1;
     std::printf("\r%-*.*s", width, width, text.c_str());
     open_ = true;
+  } else if (told_) {
+    told_(text);
   } else {
     std::fputs(io::fitted_text(text, io::screen_width()).c_str(), stdout);
   }

@@ -21,8 +21,7 @@ class Progress {
   /// Creates a display that prints on the terminal.
   /// @param quiet  true if only warnings and errors are printed
   explicit Progress(bool quiet);
-  /// Creates a display that prints nothing: messages are passed to a function, and progress lines
-  /// are discarded.
+  /// Creates a display that prints nothing: messages and progress lines are passed to a function.
   explicit Progress(std::function<void(const std::string&)> told);
   ~Progress();
 

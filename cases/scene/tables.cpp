@@ -117,4 +117,8 @@ const std::vector<std::string>& order() {
   return kOrder;
 }
 
+bool only_describes(const std::string& path) {
+  return path == "title" || path.starts_with("expect.");
+}
+
 }  // namespace flexmorph::cases::tables

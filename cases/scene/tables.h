@@ -18,4 +18,8 @@ extern const io::Key& kGravity;  // a key at the top level that is not a table
 /// itself, and "body.flow" is a table inside [[body]].
 const std::vector<std::string>& order();
 
+/// Returns true for a key of which no result depends: the title and the expected results of a case.
+/// @param path  path of the key: "expect.volume.value"
+bool only_describes(const std::string& path);
+
 }  // namespace flexmorph::cases::tables

@@ -7,6 +7,7 @@
 
 #include "cases/assembly/build.h"
 #include "cases/results/schema.h"
+#include "cases/scene/tables.h"
 #include "cases/study/study_page.h"
 #include "cases/study/sweep_motion.h"
 #include "io/files.h"
@@ -95,15 +96,14 @@ struct ComparedKey {
   std::string fallback;
 };
 
-/// Returns the settings that differ between runs: a row per key, a column per run. Titles and
-/// expectations are no settings.
+/// Returns the settings that differ between runs: a row per key, a column per run.
 Rows setting_rows(const std::vector<ComparedRun>& runs) {
   std::map<std::string, ComparedKey> keys;
   for (size_t i = 0; i < runs.size(); ++i) {
     try {
       const Scene scene = read_scene(io::CaseFile(runs[i].result.directory + "/case.toml"));
       for (const io::Setting& each : scene.file->values()) {
-        if (each.path == "title" || each.path.starts_with("expect.")) continue;
+        if (tables::only_describes(each.path)) continue;
         ComparedKey& key = keys[each.path];
         key.values.resize(runs.size());
         key.values[i] = each.value;

@@ -130,6 +130,8 @@ void BranchWatch::begin(const State& x) {
   if (end_.empty() || x.t != end_t_ || x.q != end_q_) {
     rows_.evaluate(model_, x);
     end_ = determinants();
+    end_q_ = x.q;
+    end_t_ = x.t;
   }
   start_ = end_;
   if (is_square_) return;

@@ -17,6 +17,7 @@
 #include <random>
 #include <thread>
 
+#include "geometry/sanitizers.h"
 #include "tests/attack/children.h"
 #include "tests/cases/run/resumed.h"
 
@@ -179,6 +180,8 @@ bool is_changing(const Call& call) {
 /// Runs the program under strace with the given options of strace.
 Ended trace(const Scratch& scratch, const Words& options, const Words& arguments) {
   Words words = {"strace", "-f", "-qq", "--seccomp-bpf"};
+  // LeakSanitizer and strace cannot both trace one process.
+  if (kSanitized) words.insert(words.end(), {"-E", "ASAN_OPTIONS=detect_leaks=0"});
   words.insert(words.end(), options.begin(), options.end());
   words.emplace_back(FLEXMORPH_PROGRAM);
   words.insert(words.end(), arguments.begin(), arguments.end());

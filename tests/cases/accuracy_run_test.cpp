@@ -64,7 +64,7 @@ refinements = ["elements", "quadrature", "load_steps"]
 TEST(Accuracy, ReproducesTheCantileverAndWritesCasesThatRun) {
   const Scratch scratch;
   const std::string file = scratch.write("strip.toml", kStrip), folder = scratch / "out";
-  const Ended ended = accuracy(scratch, file, folder, {"--budget", "5s"});
+  const Ended ended = accuracy(scratch, file, folder, {"--budget", "10min"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const io::CsvTable table = io::read_csv(folder + "/accuracy.csv");
   const auto limits = table.numbers("limit"), values = table.numbers("value");
@@ -82,7 +82,7 @@ TEST(Accuracy, ReproducesTheCantileverAndWritesCasesThatRun) {
   EXPECT_EQ(run.code, 0) << run.err;
 
   // A second call runs no level again and reports identical numbers.
-  const Ended again = accuracy(scratch, file, folder, {"--budget", "5s"});
+  const Ended again = accuracy(scratch, file, folder, {"--budget", "10min"});
   EXPECT_EQ(again.code, 0);
   const io::CsvTable second = io::read_csv(folder + "/accuracy.csv");
   const auto once_more = second.numbers("value");

@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"between_nodes",
               kRod,
               "joint.2.point_b=[0.026, 0.0]",
-              {"design.body", "'crank_pin'", "(0.026, 0) [m]"}},
+              {"design.body", "'crank_pin'", "(0.026, 0) [m]", "nearest node is at (0.02625, 0)"}},
         Wrong{"one_pin", kRod, "joint.3.point_b=[0.025, 0.0]", {"'rod'", "[[joint]]", "points: 1"}},
         Wrong{"in_the_void",
               kRod,

@@ -143,7 +143,7 @@ class Case:
         folder : str or os.PathLike, optional
             Run folder, which receives the files that the program writes. None writes no files.
         progress : callable, optional
-            Function that receives the messages of the run: ``progress(text)``.
+            Function that receives the messages and progress lines of the run: ``progress(text)``.
         callback : callable, optional
             Function that is called after every design iteration with a dictionary of its values
             (columns of history.csv) and the scaled variables ``x`` of the body. If it returns True,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "cases/scene/design/keys.h"
 #include "cases/scene/read.h"
@@ -41,6 +42,9 @@ std::string words(const Vec2& point) {
   return "(" + io::to_text(point.x()) + ", " + io::to_text(point.y()) + ")";
 }
 
+/// Returns a coordinate [m] without the round-off of its computation, rounded to 1e-12 m.
+double decimal(double x) { return std::round(x * 1e12) / 1e12 + 0.0; }
+
 }  // namespace
 
 namespace design_keys {
@@ -72,14 +76,18 @@ Link read_link(const Table& t, const io::Key& key, const Body& body, const Scene
 void check_joint_points(const Table& t, const io::Key& key, const Scene& scene,
                         const BodyDesign& design) {
   const Grid& g = design.grid;
-  for (const Joint& joint : scene.joints)
-    if (const auto point = joint.point_on(design.body);
-        point &&
-        !(is_whole((point->x() - g.x0) / g.dx()) && is_whole((point->y() - g.y0) / g.dy())))
-      t.fail(key,
-             "joint '" + joint.name +
-                 "' must hold the designed body at a node of its design mesh; it holds it at " +
-                 words(*point) + " [m]");
+  for (const Joint& joint : scene.joints) {
+    const auto point = joint.point_on(design.body);
+    if (!point) continue;
+    const double column = (point->x() - g.x0) / g.dx(), row = (point->y() - g.y0) / g.dy();
+    if (is_whole(column) && is_whole(row)) continue;
+    t.fail(key, "joint '" + joint.name +
+                    "' must hold the designed body at a node of its design mesh; it holds it at " +
+                    words(*point) + " [m], and the nearest node is at " +
+                    words({decimal(g.x0 + std::round(column) * g.dx()),
+                           decimal(g.y0 + std::round(row) * g.dy())}) +
+                    " [m]");
+  }
 }
 
 void check_pins_solid(const Table& t, const BodyDesign& design) {
