@@ -35,9 +35,7 @@ SparseMatrix rows_of_rigid_bodies(const Model& model, const SparseMatrix& j) {
 SparseMatrix without_zeros(const SparseMatrix& j) {
   SparseMatrix out = j;
   constexpr double kSmall = 1e-3;  // too small to separate a row from others, see entangled_rows()
-  for (int column = 0; column < out.cols(); ++column)
-    for (SparseMatrix::InnerIterator it(out, column); it; ++it)
-      if (it.value() == 0) it.valueRef() = kSmall;
+  out.coeffs() = (out.coeffs() == 0).select(kSmall, out.coeffs());
   return out;
 }
 
