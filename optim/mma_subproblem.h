@@ -81,7 +81,8 @@ class MmaSolver {
   double longest_step() const;
   void stage(const MmaSubproblem& p, double epsilon);
 
-  int n_, m_;
+  [[maybe_unused]] int n_;  // read by assertions only
+  int m_;
   MmaVariables at_, from_, step_;
   Eigen::ArrayXd to_upp_, to_low_, to_beta_, to_alpha_;  // 1/(U-x), 1/(x-L), 1/(β-x), 1/(x-α)
   Eigen::ArrayXd plam_, qlam_, slope_;                   // p0 + P λ, q0 + Q λ, dψ/dx

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <string_view>
 
 namespace flexmorph::io {
@@ -10,7 +9,8 @@ namespace {
 
 struct Term {
   std::string_view word;
-  std::initializer_list<std::string_view> here;  // the first one that is known is the answer
+  // The first of these words that is known is the answer; the second one may be empty.
+  std::array<std::string_view, 2> here;
 };
 
 bool ends_with_degrees(const std::string& key) {
@@ -21,7 +21,7 @@ bool ends_with_degrees(const std::string& key) {
 }  // namespace
 
 std::string word_for_term(const std::string& word, std::span<const std::string> known) {
-  static const std::array kTerms = {
+  static constexpr std::array kTerms = {
       Term{"prismatic", {"slider"}},
       Term{"translational", {"slider"}},
       Term{"translation", {"slider"}},
@@ -66,7 +66,8 @@ std::string word_for_term(const std::string& word, std::span<const std::string> 
   for (const Term& term : kTerms)
     if (term.word == word)
       for (const std::string_view here : term.here)
-        if (std::find(known.begin(), known.end(), here) != known.end()) return std::string(here);
+        if (!here.empty() && std::find(known.begin(), known.end(), here) != known.end())
+          return std::string(here);
   return "";
 }
 
