@@ -53,7 +53,8 @@ inline std::vector<Component> random_layout(unsigned seed, double amount = 1) {
   std::uniform_real_distribution<double> uniform(-amount, amount);
   std::vector<Component> all = layout(0.01);
   for (Component& c : all) {
-    c.center += 0.01 * Vec2(uniform(engine), uniform(engine));
+    const double x = uniform(engine), y = uniform(engine);
+    c.center += 0.01 * Vec2(x, y);
     c.half_length += 0.01 * uniform(engine);
     c.angle += 0.3 * uniform(engine);
     for (double* thickness : {&c.c1, &c.c2, &c.c3}) *thickness += 0.003 * uniform(engine);

@@ -35,6 +35,19 @@ LengthScaleViolation narrowest(const BodyProblem& p, const std::vector<Component
   return {};
 }
 
+/// Returns the place of the width that gives this value of a limit.
+LengthScaleViolation violation_of(const BodyProblem& p, const std::vector<Component>& components,
+                                  const MinimumWidths& wanted, double limit) {
+  const auto regions = regions_of(p, components, kOutlineTolerance * p.grid.dx());
+  for (const LengthScaleViolation& place :
+       length_scale_violations_of(p, regions, 1.5 * wanted.largest())) {
+    const double width = width_gradient(p, components, place).width;
+    if (std::abs(0.003 * (1 - width / (1.002 * wanted.of(place))) - limit) < 1e-12) return place;
+  }
+  ADD_FAILURE() << "no place with this limit";
+  return {};
+}
+
 double slope(const WidthGradient& w, int component, Parameter p) {
   return w.slope[Component::kParameters * component + p];
 }
@@ -130,13 +143,15 @@ TEST(WidthGradient, OfAFreeEndKnowsNoRigidMotion) {
 }
 
 /// Components in general position: limits of designs moved along a direction are compared with the
-/// derivative. Outlines are polygons within t = 0.01 cells of the true outlines. A Newton step
-/// leaves an error of t² κ / 2, 1e-6 m at curvatures κ of 200/m, and contacts slide: 2 % of a
-/// derivative at a step of 1 mm.
+/// derivative at slits between two components, where it is exact for exact contacts. Outlines are
+/// polygons. If the contact of a disc is a corner of a polygon, the normal of the true outline
+/// differs from the direction of the width by an angle, and the true contact lies beside the corner
+/// at a distance of this angle times the radius of curvature. The velocity of the outline there
+/// differs by a fraction of about this angle.
 TEST(OutlineLimits, FollowTheWidthsOfMovedComponents) {
   const MinimumWidths wanted{0.02, 0.01};
   int tested = 0;
-  for (unsigned seed = 1; seed <= 12; ++seed) {
+  for (unsigned seed = 1; seed <= 16; ++seed) {
     std::vector<Component> some = random_layout(seed);
     some.resize(8);
     const BodyProblem p = problem_of(some);
@@ -149,25 +164,35 @@ TEST(OutlineLimits, FollowTheWidthsOfMovedComponents) {
         for (double* c : {&out[k].c1, &out[k].c2, &out[k].c3}) *c += step * (k % 2 == 0 ? 1 : 0.5);
       return out;
     };
-    const double h = 5e-4;
+    const double h = 1e-4;
     limits.evaluate(moved(h), up);
     limits.evaluate(moved(-h), down);
     // The rows have no fixed order. The largest violation stays the same one as long as no other
     // becomes larger.
-    Eigen::Index row, row_up, row_down;
+    Eigen::Index row;
     const double worst = here.g.maxCoeff(&row);
-    const double change = (up.g.maxCoeff(&row_up) - down.g.maxCoeff(&row_down)) / (2 * h);
+    const double change = (up.g.maxCoeff() - down.g.maxCoeff()) / (2 * h);
     const bool discontinuity =
-        std::abs(up.g.maxCoeff() + down.g.maxCoeff() - 2 * worst) > 0.05 * h * change;
+        std::abs(up.g.maxCoeff() + down.g.maxCoeff() - 2 * worst) > 0.05 * h * std::abs(change);
     if (worst < 0 || discontinuity) continue;
+    const LengthScaleViolation place = violation_of(p, some, wanted, worst);
+    // A motion of an outline with one contact changes the width by the cosine of this angle.
+    double angles = 0;
+    int outlines = 0;
     double by_slope = 0;
-    for (size_t k = 0; k < some.size(); ++k)
-      for (const Parameter c : {c1, c2, c3})
-        by_slope += here.dg(row, static_cast<Eigen::Index>(7 * k) + c) * (k % 2 == 0 ? 1 : 0.5);
-    EXPECT_NEAR(by_slope, change, 0.05 * std::abs(change)) << seed;
+    for (size_t k = 0; k < some.size(); ++k) {
+      const Eigen::RowVectorXd dg = here.dg.row(row).segment(7 * static_cast<Eigen::Index>(k), 7);
+      if (dg.isZero(0)) continue;
+      ++outlines;
+      angles += std::acos(std::min(1.0, dg.head(2).norm() * 1.002 * wanted.of(place) / 0.003));
+      for (const Parameter c : {c1, c2, c3}) by_slope += dg[c] * (k % 2 == 0 ? 1 : 0.5);
+    }
+    const bool slit = place.kind == LengthScaleViolation::Kind::neck && !place.solid;
+    if (!slit || outlines > 2) continue;
+    EXPECT_NEAR(by_slope, change, (0.02 + angles) * std::abs(change)) << seed;
     ++tested;
   }
-  EXPECT_GE(tested, 4);
+  EXPECT_GE(tested, 8);
 }
 
 TEST(OutlineLimits, AreNoLimitsWhereAllIsWide) {
