@@ -35,16 +35,16 @@ LengthScaleViolation narrowest(const BodyProblem& p, const std::vector<Component
   return {};
 }
 
-/// Returns the place of the width that gives this value of a limit.
+/// Returns the violation whose width gives this value of a limit.
 LengthScaleViolation violation_of(const BodyProblem& p, const std::vector<Component>& components,
                                   const MinimumWidths& wanted, double limit) {
   const auto regions = regions_of(p, components, kOutlineTolerance * p.grid.dx());
-  for (const LengthScaleViolation& place :
+  for (const LengthScaleViolation& found :
        length_scale_violations_of(p, regions, 1.5 * wanted.largest())) {
-    const double width = width_gradient(p, components, place).width;
-    if (std::abs(0.003 * (1 - width / (1.002 * wanted.of(place))) - limit) < 1e-12) return place;
+    const double width = width_gradient(p, components, found).width;
+    if (std::abs(0.003 * (1 - width / (1.002 * wanted.of(found))) - limit) < 1e-12) return found;
   }
-  ADD_FAILURE() << "no place with this limit";
+  ADD_FAILURE() << "no violation with this limit";
   return {};
 }
 
@@ -175,7 +175,7 @@ TEST(OutlineLimits, FollowTheWidthsOfMovedComponents) {
     const bool discontinuity =
         std::abs(up.g.maxCoeff() + down.g.maxCoeff() - 2 * worst) > 0.05 * h * std::abs(change);
     if (worst < 0 || discontinuity) continue;
-    const LengthScaleViolation place = violation_of(p, some, wanted, worst);
+    const LengthScaleViolation found = violation_of(p, some, wanted, worst);
     // A motion of an outline with one contact changes the width by the cosine of this angle.
     double angles = 0;
     int outlines = 0;
@@ -184,10 +184,10 @@ TEST(OutlineLimits, FollowTheWidthsOfMovedComponents) {
       const Eigen::RowVectorXd dg = here.dg.row(row).segment(7 * static_cast<Eigen::Index>(k), 7);
       if (dg.isZero(0)) continue;
       ++outlines;
-      angles += std::acos(std::min(1.0, dg.head(2).norm() * 1.002 * wanted.of(place) / 0.003));
+      angles += std::acos(std::min(1.0, dg.head(2).norm() * 1.002 * wanted.of(found) / 0.003));
       for (const Parameter c : {c1, c2, c3}) by_slope += dg[c] * (k % 2 == 0 ? 1 : 0.5);
     }
-    const bool slit = place.kind == LengthScaleViolation::Kind::neck && !place.solid;
+    const bool slit = found.kind == LengthScaleViolation::Kind::neck && !found.solid;
     if (!slit || outlines > 2) continue;
     EXPECT_NEAR(by_slope, change, (0.02 + angles) * std::abs(change)) << seed;
     ++tested;
