@@ -19,8 +19,8 @@ namespace flexmorph::mmc {
 ///
 /// where e is the unit vector from b to a. This is exact at necks, where the width is stationary
 /// along the medial axis, if the contacts are exact. They are contacts of polygons: at a corner of
-/// a polygon beside a strongly curved end, the derivative of a slit is wrong by up to 12 % (150
-/// random slits; median 1.1 %). Of three contacts that enclose a disc (LengthScaleViolation::
+/// a polygon beside a strongly curved end, the derivative of a slit is wrong by up to 12 % (115
+/// random slits; median 2.1 %). Of three contacts that enclose a disc (LengthScaleViolation::
 /// Kind::blob), only two count. The last disc of an end (Kind::bar) moves along the end together
 /// with the components: its velocity is the mean of their affine motions at the contacts, and the
 /// change of the width by this displacement is subtracted. w_k includes a Newton step from the
