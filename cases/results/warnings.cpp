@@ -91,7 +91,6 @@ void add_loads_on_void(const Scene& scene, const mmc::BodyProblem& p, const mmc:
 /// usable.
 void add_verification(const VerifiedOutline& outline, const mmc::BodyOutcome& outcome,
                       Warnings& out) {
-  const double crisp = outcome.crisp.compliance;
   if (!outline.verification) {
     out.push_back(
         {"The outline of body '" + outline.body + "' was not verified: " + outline.why_not + "."});
@@ -107,7 +106,7 @@ void add_verification(const VerifiedOutline& outline, const mmc::BodyOutcome& ou
     out.push_back({"The body-fitted compliance of body '" + outline.body +
                    "' has an estimated error of " + io::to_text(100 * j.error, 2) +
                    " %, because the mesh reached its largest allowed size."});
-  const double apart = crisp / j.compliance - 1;
+  const double apart = outcome.crisp.compliance / j.compliance - 1;
   if (std::isfinite(j.compliance) && std::abs(apart) > kCellsApart)
     out.push_back({"The compliance of body '" + outline.body + "' on the design mesh is " +
                    io::to_text(100 * std::abs(apart), 2) + " % " + (apart < 0 ? "below" : "above") +
@@ -178,8 +177,7 @@ void add_designs(const Scene& scene, const DesignResult& design, Warnings& out) 
   }
   for (const mmc::BodyProblem& p : design.problems)
     for (const mmc::BodyOutcome& o : design.outcomes)
-      if (o.body == p.body) {
-        if (!is_verified(scene, o)) continue;
+      if (o.body == p.body && is_verified(scene, o)) {
         if (scene.domain) add_loads_on_void(scene, p, o, out);
         add_limits(p, o, out);
         add_worse(p, o, out);

@@ -13,7 +13,6 @@
 #include "fem/solve/redundancy.h"
 
 namespace flexmorph::fem {
-
 namespace {
 
 /// One call of integrate(), with all variables of the motion.
