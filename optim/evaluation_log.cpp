@@ -13,7 +13,7 @@
 namespace flexmorph::optim {
 namespace {
 
-const std::string kHead = "flexmorph evaluations 3\n";
+const std::string kHead = "flexmorph evaluations 4\n";
 constexpr std::uint64_t kMaxRecordBytes = 1ULL << 32;  // largest plausible record [bytes]
 constexpr auto kSyncEvery = std::chrono::seconds(5);
 
@@ -79,13 +79,15 @@ std::vector<char> packed(const Evaluation& e) {
   put(out, e.response.dg);
   put(out, &e.response.first_bound, sizeof e.response.first_bound);
   put(out, &e.response.n_bounds, sizeof e.response.n_bounds);
+  put(out, static_cast<std::int64_t>(e.work.size()));
+  put(out, e.work.data(), sizeof(std::uint64_t) * e.work.size());
   return out;
 }
 
 std::optional<Evaluation> unpacked(const std::vector<char>& data) {
   Evaluation e;
   Reader in(data);
-  std::int64_t letters = 0, acceptable = 0;
+  std::int64_t letters = 0, acceptable = 0, counters = 0;
   if (!in.take(e.x) || !in.take(letters) || letters < 0 ||
       letters > static_cast<std::int64_t>(data.size()))
     return {};
@@ -94,8 +96,11 @@ std::optional<Evaluation> unpacked(const std::vector<char>& data) {
       !in.take(&e.response.f, sizeof e.response.f) || !in.take(e.response.df) ||
       !in.take(e.response.g) || !in.take(e.response.dg) ||
       !in.take(&e.response.first_bound, sizeof e.response.first_bound) ||
-      !in.take(&e.response.n_bounds, sizeof e.response.n_bounds))
+      !in.take(&e.response.n_bounds, sizeof e.response.n_bounds) || !in.take(counters) ||
+      counters < 0 || counters > static_cast<std::int64_t>(data.size() / sizeof(std::uint64_t)))
     return {};
+  e.work.resize(static_cast<size_t>(counters));
+  if (!in.take(e.work.data(), sizeof(std::uint64_t) * e.work.size())) return {};
   e.acceptable = acceptable != 0;
   return e;
 }
@@ -141,26 +146,47 @@ void EvaluationLog::drop_rest() {
                            ": cannot be written: " + std::generic_category().message(errno));
 }
 
+/// Reads the record that begins at a position.
+/// @param end  position of the record; on return that of the next record, or unchanged if there is
+///             no complete record
+std::optional<Evaluation> EvaluationLog::read(std::int64_t& end) const {
+  RecordHead head;
+  if (!read_whole(file_, &head, sizeof head, end) || head.bytes >= kMaxRecordBytes) return {};
+  std::vector<char> data(head.bytes);
+  const auto at = end + static_cast<std::int64_t>(sizeof head);
+  if (!read_whole(file_, data.data(), data.size(), at) || crc_of(data) != head.crc) return {};
+  std::optional<Evaluation> out = unpacked(data);
+  if (out) end = at + static_cast<std::int64_t>(head.bytes);
+  return out;
+}
+
 std::optional<Evaluation> EvaluationLog::next(const VectorXd& x) {
   knew_last_ = false;
+  work_after_.clear();
   if (!reading_) return {};
-  RecordHead head;
-  std::vector<char> data;
-  std::optional<Evaluation> found;
-  if (read_whole(file_, &head, sizeof head, end_) && head.bytes < kMaxRecordBytes) {
-    data.resize(head.bytes);
-    const auto at = end_ + static_cast<std::int64_t>(sizeof head);
-    if (read_whole(file_, data.data(), data.size(), at) && crc_of(data) == head.crc)
-      found = unpacked(data);
-  }
+  std::int64_t end = end_;
+  std::optional<Evaluation> found = read(end);
   if (!found || !same(found->x, x)) {
     drop_rest();
     return {};
   }
-  end_ += static_cast<std::int64_t>(sizeof head + head.bytes);
+  end_ = end;
+  if (std::optional<Evaluation> after = read(end); after && after->x.size() == 0) {
+    work_after_ = std::move(after->work);
+    end_ = end;
+  }
   knew_last_ = true;
   ++n_known_;
   return found;
+}
+
+void EvaluationLog::append_work(const Work& work) {
+  std::int64_t end = end_;
+  if (reading_ && read(end)) return;
+  if (reading_) drop_rest();
+  Evaluation record;
+  record.work = work;
+  append(record);
 }
 
 void EvaluationLog::append(const Evaluation& evaluation) {
@@ -182,6 +208,7 @@ void EvaluationLog::append(const Evaluation& evaluation) {
 ProblemValues RecordedProblem::evaluate(const VectorXd& x) {
   if (std::optional<Evaluation> known = log_.next(x)) {
     acceptable_ = known->acceptable;
+    if (counter_) counter_->continue_from(known->work);
     if (!known->failure.empty()) throw Error::numerical(known->failure);
     return std::move(known->response);
   }
@@ -195,6 +222,7 @@ ProblemValues RecordedProblem::evaluate(const VectorXd& x) {
     now.failure = error.what();
   }
   acceptable_ = now.acceptable;
+  if (counter_) now.work = counter_->work();
   log_.append(now);
   if (!now.failure.empty()) throw Error::numerical(now.failure);
   return std::move(now.response);

@@ -175,6 +175,55 @@ TEST(EvaluationLog, KnowsOnlyTheVeryDesign) {
   EXPECT_FALSE(third.next(known.x).has_value());
 }
 
+/// Counts its calls of add().
+class Calls final : public WorkCounter {
+ public:
+  Work work() const override { return {n_}; }
+  void continue_from(const Work& work) override {
+    if (!work.empty()) n_ = work.front();
+  }
+  void add(std::uint64_t n) { n_ += n; }
+
+ private:
+  std::uint64_t n_ = 0;
+};
+
+// A continued run has the work of the earlier run, before and after each evaluation, and adds its
+// own work after the last record.
+TEST(EvaluationLog, KeepsTheWork) {
+  const Scratch scratch;
+  const VectorXd a = VectorXd::Constant(6, -0.9), b = VectorXd::Constant(6, -0.8);
+  {
+    Valley valley;
+    Calls calls;
+    EvaluationLog log(scratch / "log");
+    RecordedProblem problem(valley, log, &calls);
+    calls.add(3);
+    problem.evaluate(a);
+    calls.add(4);
+    log.append_work(calls.work());
+    problem.evaluate(b);
+    calls.add(5);  // the run is killed before it writes this work
+  }
+  Valley valley;
+  Calls calls;
+  EvaluationLog log(scratch / "log");
+  RecordedProblem problem(valley, log, &calls);
+  problem.evaluate(a);
+  EXPECT_EQ(calls.work(), Work{3});
+  EXPECT_EQ(log.work_after(), Work{7});
+  log.append_work({100});  // not written, because the evaluation of b follows
+  problem.evaluate(b);
+  EXPECT_EQ(calls.work(), Work{7});
+  EXPECT_TRUE(log.work_after().empty());
+  calls.add(6);
+  log.append_work(calls.work());
+  EvaluationLog third(scratch / "log");
+  ASSERT_TRUE(third.next(a) && third.next(b));
+  EXPECT_EQ(third.work_after(), Work{13});
+  EXPECT_EQ(valley.solved, 0);
+}
+
 TEST(EvaluationLog, ThatCannotBeWrittenSaysSo) {
   EXPECT_THROW(EvaluationLog("/proc/no_such_folder/log"), Error);
   EXPECT_THROW(EvaluationLog("/dev/full"), Error);

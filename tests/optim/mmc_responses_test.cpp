@@ -185,6 +185,25 @@ TEST(Responses, ShareOneFactorization) {
   EXPECT_EQ(whole.loads.factorizations(), before + 1);
 }
 
+// A run that is continued has counted the factorization of its last design already.
+TEST(Responses, ContinueToCountFactorizations) {
+  const Goal goal{&kComplianceSum, {Limit(kVolume, 0.5, false, kPlate)}};
+  FullProblem earlier(goal), later(goal);
+  const VectorXd x = earlier.problem.start(), y = x + 1e-3 * VectorXd::Ones(x.size());
+  earlier.problem.evaluate(x);
+  earlier.problem.evaluate(y);
+  const int made = earlier.loads.factorizations();
+  later.problem.evaluate(x);
+  later.loads.continue_from(earlier.loads.work());
+  EXPECT_EQ(later.loads.work().factored, earlier.loads.work().factored);
+  for (const VectorXd& each : {y, x, y}) {
+    later.problem.evaluate(each);
+    earlier.problem.evaluate(each);
+    EXPECT_EQ(later.loads.factorizations(), earlier.loads.factorizations());
+  }
+  EXPECT_EQ(later.loads.factorizations(), made + 2);  // y is factored already
+}
+
 TEST(Responses, WithoutAStateNoneIsSolved) {
   FullProblem whole({&kMass, {Limit(kAxes, 1, true, kPlate)}});
   const int before = whole.loads.factorizations();

@@ -22,6 +22,28 @@ void begin_gently(optim::Settings& settings) {
     settings.options.try_emplace("asyinit", kAsymptotes);
 }
 
+/// Counts the factorizations of all bodies.
+class LoadsWork final : public optim::WorkCounter {
+ public:
+  explicit LoadsWork(std::span<const Subproblem> parts) : parts_(parts) {}
+  optim::Work work() const override {
+    optim::Work out;
+    for (const Subproblem& p : parts_) {
+      const ComplianceEvaluator::Work own = p.loads.work();
+      out.insert(out.end(), {own.factorizations, own.factored});
+    }
+    return out;
+  }
+  void continue_from(const optim::Work& work) override {
+    if (work.size() != 2 * parts_.size()) return;
+    for (size_t k = 0; k < parts_.size(); ++k)
+      parts_[k].loads.continue_from({work[2 * k], work[2 * k + 1]});
+  }
+
+ private:
+  std::span<const Subproblem> parts_;
+};
+
 StageBudget with_gentle(StageBudget share, bool gentle) {
   share.gentle = gentle;
   return share;
@@ -47,7 +69,8 @@ StageResult StageRunner::optimize(const StageResult& from, std::vector<Formulati
   settings.max_evaluations = share.solves > 0 ? share.solves - evaluations_ : 0;
   CombinedProblem whole(parts_, from.designs, formulations);
   std::optional<optim::RecordedProblem> recorded;
-  if (settings_.past) recorded.emplace(whole.problem(), settings_.past->log);
+  LoadsWork work(parts_);
+  if (settings_.past) recorded.emplace(whole.problem(), settings_.past->log, &work);
   optim::CancellableProblem problem(recorded ? *recorded : whole.problem(),
                                     [this] { return is_running_ = keeps_running(); });
   StageResult out = from;
@@ -69,20 +92,30 @@ bool StageRunner::see(CombinedProblem& whole, const optim::Iterate& iterate) {
     ++with_widths_;
     most_left_with_widths_ = most_left_;
   }
+  bool known = true;  // all rows are those of the earlier run
   for (size_t k = 0; k < parts_.size(); ++k) {
     MmcProblem& state = whole.states[k];
     const VectorXd x = whole.part_of(*iterate.x, k);
     // The state belongs to a later trial, or the evaluation came from the log.
     if (state.x().size() != x.size() || state.x() != x) state.restore(x);
-    see(parts_[k], state, iterate, k == 0);
+    if (!see(parts_[k], state, iterate, k == 0)) known = false;
+  }
+  if (settings_.past) {
+    optim::EvaluationLog& log = settings_.past->log;
+    LoadsWork work(parts_);
+    if (known)
+      work.continue_from(log.work_after());
+    else
+      log.append_work(work.work());
   }
   return is_running_;
 }
 
-void StageRunner::see(const Subproblem& p, MmcProblem& state, const optim::Iterate& iterate,
+bool StageRunner::see(const Subproblem& p, MmcProblem& state, const optim::Iterate& iterate,
                       bool first) {
   const Past* past = settings_.past;
-  if (past && past->log.knew_last() && past->has_row({p.problem.body, cycle_, iterations_})) return;
+  if (past && past->log.knew_last() && past->has_row({p.problem.body, cycle_, iterations_}))
+    return true;
   if (!state.is_solved()) state.evaluate(VectorXd(state.x()));
   CrispDesign crisp;
   const bool wanted = settings_.crisp_every > 0 && iterations_ % settings_.crisp_every == 0;
@@ -95,6 +128,7 @@ void StageRunner::see(const Subproblem& p, MmcProblem& state, const optim::Itera
                              state.value(), p.loads, wanted ? &crisp : nullptr}))
     is_running_ = false;
   state.clear_seconds();
+  return false;
 }
 
 StageResult first_designs(std::span<const Subproblem> parts) {

@@ -64,7 +64,7 @@ class StageRunner {
 
  private:
   bool see(CombinedProblem& whole, const optim::Iterate& iterate);
-  void see(const Subproblem& part, MmcProblem& state, const optim::Iterate& iterate, bool first);
+  bool see(const Subproblem& part, MmcProblem& state, const optim::Iterate& iterate, bool first);
 
   std::vector<Subproblem> parts_;
   int cycle_;

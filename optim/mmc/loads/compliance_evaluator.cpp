@@ -305,6 +305,17 @@ int ComplianceEvaluator::n_right_hand_sides() const {
 }
 
 int ComplianceEvaluator::factorizations() const { return impl_->factorizations; }
+
+ComplianceEvaluator::Work ComplianceEvaluator::work() const {
+  return {static_cast<std::uint64_t>(impl_->factorizations), impl_->factored_checksum()};
+}
+
+void ComplianceEvaluator::continue_from(const Work& work) {
+  impl_->factorizations = static_cast<int>(work.factorizations);
+  impl_->factored.resize(0);
+  impl_->counted = work.factored;
+}
+
 double ComplianceEvaluator::condition() const { return impl_->solver.condition(); }
 ComplianceEvaluator::Seconds ComplianceEvaluator::seconds() const { return impl_->seconds; }
 

@@ -144,8 +144,18 @@ class ComplianceEvaluator {
   int position(int load) const;
   /// Returns the number of right-hand sides that evaluate() solves, after compression.
   int n_right_hand_sides() const;
-  /// Returns the number of factorizations since construction.
+  /// Returns the number of factorizations since construction, or with continue_from() since the
+  /// beginning of the run that is continued.
   int factorizations() const;
+  /// The factorizations of a run, with which a later run continues to count.
+  struct Work {
+    std::uint64_t factorizations = 0;  ///< Number of factorizations.
+    std::uint64_t factored = 0;        ///< Checksum of the design of the last one; 0: none.
+  };
+  /// Returns the factorizations so far.
+  Work work() const;
+  /// Continues to count from an earlier run, as if this object had made its factorizations.
+  void continue_from(const Work& work);
   /// Returns the estimated condition of K of the last factorization, see fem::condition_estimate().
   double condition() const;
   /// CPU seconds of one evaluation.

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/archive.h"
 #include "optim/mmc/loads/restrained_expansion.h"
 
 namespace flexmorph::mmc {
@@ -17,6 +18,13 @@ std::vector<int> columns_of(const fem::StaticSolver& solver, bool is_link) {
   std::vector<int> out(solver.rows().begin(), solver.rows().end());
   if (is_link) std::iota(out.begin(), out.end(), 0);
   return out;
+}
+
+/// Returns the checksum of a vector, which is not zero.
+std::uint64_t checksum_of(const VectorXd& v) {
+  const auto* bytes = reinterpret_cast<const char*>(v.data());
+  return std::max<std::uint64_t>(
+      1, checksum({bytes, sizeof(double) * static_cast<std::size_t>(v.size())}));
 }
 
 }  // namespace
@@ -32,10 +40,15 @@ LoadSolver::LoadSolver(fem::StaticSolver of, bool is_link)
     : solver(std::move(of)),
       inertia(solver.grid(), solver.section(), columns_of(solver, is_link)) {}
 
+std::uint64_t LoadSolver::factored_checksum() const {
+  return factored.size() > 0 ? checksum_of(factored) : counted;
+}
+
 void LoadSolver::factorize(const VectorXd& stiffness) {
   if (factored.size() == stiffness.size() && factored == stiffness) return;
   factored.resize(0);
-  ++factorizations;
+  if (counted == 0 || counted != checksum_of(stiffness)) ++factorizations;
+  counted = 0;
   solver.factorize(stiffness);
   factored = stiffness;
 }

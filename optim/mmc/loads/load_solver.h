@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -38,7 +39,10 @@ struct LoadSolver {
   /// no clamp moves.
   std::vector<int> roots = {}, solved_roots = {};
   VectorXd factored = {};  ///< Stiffness scale factors of the current factorization (n_cells).
-  int factorizations = 0;  ///< Number of factorizations since construction.
+  int factorizations = 0;  ///< Number of factorizations, with those of the run that is continued.
+  /// Checksum of the stiffness scale factors that the continued run has factored last; 0: none.
+  /// Their factorization is counted already.
+  std::uint64_t counted = 0;
 
   /// Forces, displacements, weighted displacements and work space that all evaluations use again.
   MatrixXd F = {}, U = {}, Z = {}, work = {};
@@ -53,6 +57,8 @@ struct LoadSolver {
   /// Factors K at stiffness scale factors (n_cells), unless it is already factored there.
   /// @throws Error (numerical) as StaticSolver::factorize().
   void factorize(const VectorXd& stiffness);
+  /// Returns the checksum of the stiffness scale factors of the current factorization; 0: none.
+  std::uint64_t factored_checksum() const;
   /// Computes the fixed loads of the definitions `frozen` and `stiffness`. With support `far_end`
   /// they include the nodal forces on the root line, because these forces hold the plate there in
   /// the motion.

@@ -33,20 +33,16 @@ inline std::map<std::string, std::string> lasting(const std::string& folder) {
       for (const char* key :
            {"seconds_wall", "seconds_cpu", "seconds_by_phase", "peak_memory_bytes"})
         run.erase(key);
-      for (json& result : run["results"]) {
-        result.erase("factorizations");
+      for (json& result : run["results"])
         if (result.contains("body_fitted")) result["body_fitted"].erase("seconds");
-      }
       text = run.dump();
     }
     if (name == "history.csv" || name == "sweep.csv" || name == "rows.csv") {
       const io::CsvTable table = io::read_csv(entry.path().string());
       text.clear();
       for (size_t c = 0; c < table.columns.size(); ++c) {
-        // Factorizations are left out here and in run.json, because archived evaluations are not
-        // factored again.
         if (table.columns[c].find("seconds") != std::string::npos ||
-            table.columns[c] == "factorizations" || table.columns[c] == "peak_memory_bytes")
+            table.columns[c] == "peak_memory_bytes")
           continue;
         text += table.columns[c];
         for (const auto& cell : table.texts(table.columns[c])) text += "," + cell;
