@@ -17,6 +17,7 @@ struct Failure {
   std::optional<int> cycle, iteration;  ///< Cycle and iteration of the design.
   std::string kind;                     ///< Kind of the error: "input", "numerical", "defect"; or
                                         ///< "limit" if the run reached its limit of CPU time.
+  std::optional<double> seconds_limit;  ///< The limit of CPU time that was reached [s].
   std::string cause;                    ///< Message of the error.
 };
 

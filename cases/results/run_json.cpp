@@ -269,6 +269,7 @@ Json failure_results(const Failure& f) {
   set("cycle", f.cycle);
   set("iteration", f.iteration);
   out["kind"] = f.kind;
+  set("seconds_limit", f.seconds_limit);
   out["cause"] = f.cause;
   return out;
 }

@@ -48,7 +48,7 @@ struct RunInfo {
   std::string missing_exports;  ///< Message on exports that could not be made; often empty.
   int threads = 1;              ///< Number of motions computed at the same time.
 
-  /// Wall time [s], CPU time [s] and peak memory [bytes] of the process.
+  /// Wall time [s] and CPU time [s] of all calls of the run, and its peak memory [bytes].
   double seconds_wall = 0, seconds_cpu = 0, peak_memory_bytes = 0;
 
   Seconds phases;  ///< CPU times of the phases of a run with designs [s].

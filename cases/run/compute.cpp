@@ -26,7 +26,7 @@ PreparedCase load_case(const std::string& name, std::span<const std::string> cha
 }
 
 EndedRun compute_as_far_as_possible(const PreparedCase& prepared, const ComputeSettings& settings) {
-  const auto begin = std::chrono::steady_clock::now();
+  const RunClock clock;
   Progress progress(settings.say);
   const RunContext run{
       .prepared = prepared,
@@ -41,8 +41,7 @@ EndedRun compute_as_far_as_possible(const PreparedCase& prepared, const ComputeS
   else
     complete_result(prepared.scene(), "done", "", out.result);
   out.result.info.threads = settings.threads;
-  out.result.info.seconds_wall =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  clock.read(out.result.info);
   return out;
 }
 

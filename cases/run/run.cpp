@@ -158,8 +158,7 @@ namespace {
 /// Runs a case in its folder and reports to a display.
 /// @param settings  callbacks of the run
 int run_in_folder(const ReadyCase& ready, const std::string& directory, const RunOptions& options,
-                  const ComputeSettings& settings, Progress& progress,
-                  RunFiles::Clock::time_point begin) {
+                  const ComputeSettings& settings, Progress& progress, RunClock clock) {
   const io::CaseFile& file = ready.file;
   const PreparedCase& prepared = ready.prepared;
   const Scene& scene = prepared.scene();
@@ -171,6 +170,7 @@ int run_in_folder(const ReadyCase& ready, const std::string& directory, const Ru
     }
   RunFolder folder(directory, scene, options.threads > 1,
                    options.resume ? RunFolder::Begin::keep_running : RunFolder::Begin::anew);
+  if (options.resume && !scene.statics) clock.add_earlier(directory);
   keep_case(file, options.explain, folder);
   if (scene.output.vtk) folder.write_text("paraview.py", kParaViewScript);
   progress.plan({phase_costs(scene, scene.domain ? nullptr : &prepared.mechanism()),
@@ -181,11 +181,15 @@ int run_in_folder(const ReadyCase& ready, const std::string& directory, const Ru
         "A path of equilibria cannot be resumed. The computation starts from the beginning.");
   if (!folder.moved_to().empty())
     progress.say("The earlier run in this folder was moved to " + folder.moved_to());
-  RunFiles files(scene, folder, options.threads, begin);
+  RunFiles files(scene, folder, options.threads, clock);
   files.write({}, "running", "");
   LivePage page(scene, folder);
   page.update("the model is built");
-  progress.watch([&](const std::string& words) { page.update(words); });
+  const std::string times = scene.statics ? "" : folder.file(kTimesFile);
+  progress.watch([&](const std::string& words) {
+    page.update(words);
+    if (!times.empty()) clock.keep(times);
+  });
   if (options.open)
     if (const std::string why = open_on_desktop(directory + "/report.html"); !why.empty())
       progress.say(why, true);
@@ -206,7 +210,7 @@ int run_in_folder(const ReadyCase& ready, const std::string& directory, const Ru
 }  // namespace
 
 int run_case(const RunOptions& options) {
-  const RunFiles::Clock::time_point begin = RunFiles::Clock::now();
+  const RunClock clock = RunClock::since_process_start();
   // A case that cannot be built or is too large is refused before a folder is created.
   const ReadyCase ready = ready_case(options.case_name, options.overrides, options.directory);
   const Scene& scene = ready.prepared.scene();
@@ -218,7 +222,7 @@ int run_case(const RunOptions& options) {
   Progress progress(options.quiet);
   ComputeSettings settings;
   settings.keep_running = keeps_running;
-  return run_in_folder(ready, directory, options, settings, progress, begin);
+  return run_in_folder(ready, directory, options, settings, progress, clock);
 }
 
 int compute_into(const ReadyCase& ready, const std::string& directory,
@@ -231,7 +235,7 @@ int compute_into(const ReadyCase& ready, const std::string& directory,
   Progress progress(settings.say);
   ComputeSettings callbacks = settings;
   if (!callbacks.keep_running) callbacks.keep_running = [] { return true; };
-  return run_in_folder(ready, directory, options, callbacks, progress, RunFiles::Clock::now());
+  return run_in_folder(ready, directory, options, callbacks, progress, RunClock());
 }
 
 }  // namespace flexmorph::cases

@@ -16,7 +16,6 @@
 #include "cases/results/warnings.h"
 #include "cases/run/design_run.h"
 #include "cases/run/motions.h"
-#include "geometry/cpu_time.h"
 
 namespace flexmorph::cases {
 namespace {
@@ -87,21 +86,17 @@ void complete_result(const Scene& scene, const std::string& status, const std::s
                      RunResult& result) {
   result.warnings = warnings_of(scene, result);
   result.expectations = compare_expectations(scene, result);
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
   RunInfo& info = result.info;
   info.status = status == "done" ? done_text(result.warnings) : status;
   info.message = message;
-  info.seconds_cpu = cpu_seconds();
-  info.peak_memory_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
 RunResult RunFiles::write(RunResult result, const std::string& status, const std::string& message) {
   complete_result(scene_, status, message, result);
   RunInfo& info = result.info;
   info.threads = threads_;
-  info.seconds_wall = std::chrono::duration<double>(Clock::now() - begin_).count();
   info.phases = phases_of(result.design, folder_);
+  clock_.read(info);
   write_report(scene_, result, folder_);
   return result;
 }
@@ -125,6 +120,7 @@ int end_early(EndedRun& ended, RunFiles& files, Progress& progress) {
     if (over_time && !interrupted) {
       Failure failure = progress.where();
       failure.kind = "limit";
+      failure.seconds_limit = time_limit;
       failure.cause = "ended after " + io::to_text(time_limit, 3) + " CPU seconds";
       ended.result.failure = failure;
       files.write_failed(std::move(ended.result), failure.cause);

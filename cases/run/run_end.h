@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <span>
 #include <string>
@@ -9,6 +8,7 @@
 #include "cases/output/run_folder.h"
 #include "cases/results/run_result.h"
 #include "cases/run/progress.h"
+#include "cases/run/run_clock.h"
 
 /// The end of a run: after a signal, after an error, or with all results written.
 namespace flexmorph::cases {
@@ -42,8 +42,7 @@ bool is_another_case(std::span<const std::string> overrides);
 void remove_progress(
     const std::function<std::vector<std::string>(const std::string& ending)>& files_of);
 
-/// Fills the general fields of a result: status, message, warnings, expectations, CPU time and peak
-/// memory of the process.
+/// Fills the general fields of a result except times: status, message, warnings and expectations.
 /// @param status  "done" becomes "done, not usable" if a warning makes the result unusable
 void complete_result(const Scene& scene, const std::string& status, const std::string& message,
                      RunResult& result);
@@ -51,13 +50,10 @@ void complete_result(const Scene& scene, const std::string& status, const std::s
 /// A writer of the files that every run has in its folder: run.json and the report.
 class RunFiles {
  public:
-  /// Clock by which the wall time of a run is measured.
-  using Clock = std::chrono::steady_clock;
-
-  /// Creates the writer; the scene and the folder have to outlive it.
-  /// @param begin  time at which the program began with the run
-  RunFiles(const Scene& scene, RunFolder& folder, int threads, Clock::time_point begin)
-      : scene_(scene), folder_(folder), threads_(threads), begin_(begin) {}
+  /// Creates the writer; the scene, the folder and the clock have to outlive it.
+  /// @param clock  clock that began to measure when the program began with the run
+  RunFiles(const Scene& scene, RunFolder& folder, int threads, const RunClock& clock)
+      : scene_(scene), folder_(folder), threads_(threads), clock_(clock) {}
 
   /// Completes a result and writes it with its report.
   /// @param status  "done" becomes "done, not usable" if a warning makes the result unusable
@@ -76,7 +72,7 @@ class RunFiles {
   const Scene& scene_;
   RunFolder& folder_;
   int threads_;
-  Clock::time_point begin_;
+  const RunClock& clock_;
 };
 
 /// Writes the results of a run and prints its warnings, the expectations that it violates, and the

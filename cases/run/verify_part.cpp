@@ -145,7 +145,8 @@ EndedRun evaluate_design(const GivenCase& given, const std::string& directory,
   const PreparedCase prepared(std::move(scene));
   RunFolder folder(directory, prepared.scene(), options.threads > 1);
   keep_case(given.file, false, folder);
-  RunFiles files(prepared.scene(), folder, options.threads, RunFiles::Clock::now());
+  const RunClock clock;
+  RunFiles files(prepared.scene(), folder, options.threads, clock);
   progress.say("The design of the run " + given.run + " is evaluated.");
   RunContext context{prepared, &folder, progress, keeps_running, options.threads};
   context.uniform = false;
@@ -205,7 +206,7 @@ void say_numbers(const PartComparison& comparison, Progress& progress) {
 }  // namespace
 
 int verify_parts(const VerifyOptions& options) {
-  const RunFiles::Clock::time_point begin = RunFiles::Clock::now();
+  const RunClock clock = RunClock::since_process_start();
   const std::vector<GivenPart> parts = given_parts(options.parts);
   const GivenCase given = given_case(options);
   const std::string directory = directory_of(options, given);
@@ -221,7 +222,7 @@ int verify_parts(const VerifyOptions& options) {
   progress.say(scene.title + ": The results are written to " + directory);
   if (!folder.moved_to().empty())
     progress.say("The earlier run in this folder was moved to " + folder.moved_to());
-  RunFiles files(scene, folder, options.threads, begin);
+  RunFiles files(scene, folder, options.threads, clock);
   files.write({}, "running", "");
   std::optional<RunResult> design;
   EndedRun ended;

@@ -58,7 +58,7 @@ bool is_answered(const StudyOptions& options, const Variant& variant, const Vari
   if (!result.done() && !failed) return false;
   // An equal run has equal numbers, but not an equal disk.
   if (failed && result.message.find("cannot be written") != std::string::npos) return false;
-  if (result.ending.over_time && result.seconds_cpu < options.time_limit) return false;
+  if (result.ending.over_time && result.seconds_limit < options.time_limit) return false;
   return keeps_case(folder_of(options, variant), case_of(options, variant));
 }
 

@@ -107,8 +107,9 @@ struct VariantResult {
   std::string message;  ///< Reason of a failure.
   Ending ending;        ///< End of the process; for a run of an earlier study only its exit code.
 
-  /// CPU time [s], wall time [s] and peak memory [bytes] of the run.
+  /// CPU time [s] and wall time [s] of all calls of the run, and its peak memory [bytes].
   double seconds_cpu = 0, seconds_wall = 0, peak_memory_bytes = 0;
+  double seconds_limit = 0;  ///< Limit of CPU time that the last call reached [s]; NaN: none.
 
   std::vector<BodyResult> bodies;  ///< Results of the designed bodies.
 

@@ -129,12 +129,14 @@ void read_run(const std::string& text, VariantResult& out) {
   out.seconds_cpu = number(run, "seconds_cpu");
   out.seconds_wall = number(run, "seconds_wall");
   out.peak_memory_bytes = number(run, "peak_memory_bytes");
-  const std::string kind = run.value("failure", nlohmann::json::object()).value("kind", "");
+  const nlohmann::json failure = run.value("failure", nlohmann::json::object());
+  const std::string kind = failure.value("kind", "");
   out.ending.code = out.done() ? (out.status == "done" ? 0 : kExpectationsMissed)
                                : (kind == "defect"  ? 1
                                   : kind == "input" ? 2
                                                     : 3);
   out.ending.over_time = kind == "limit";
+  out.seconds_limit = number(failure, "seconds_limit");
   for (const nlohmann::json& r : run.value("results", nlohmann::json::array()))
     out.bodies.push_back(read_body(r));
   if (!out.bodies.empty()) read_history(out.directory + "/history.csv", out.bodies);

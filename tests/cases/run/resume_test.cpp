@@ -1,5 +1,7 @@
 // Shows that runs which are killed and resumed have the results of an undisturbed run byte for
 // byte.
+#include <sys/resource.h>
+
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -86,6 +88,50 @@ TEST(Resume, GoesOnAfterAnInterruption) {
   EXPECT_TRUE(fs::exists(folder + "/components.csv"));
   flexmorph(scratch, text_of(FLEXMORPH_SHORT_CASE, folder, changes, true));
   expect_same(lasting(folder), lasting(whole));
+}
+
+/// Returns the CPU time of all processes that this one has started and waited for [s].
+double cpu_of_children() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// The CPU time of a run is that of all its calls, as the system measures them. A call that is
+// killed counts until a moment before it is killed; its time without a report of progress is not
+// counted.
+TEST(Resume, AddsTheTimesOfItsCalls) {
+  const Scratch scratch;
+  const std::string folder = scratch / "out";
+  const Words changes = coarse(30), words = text_of(FLEXMORPH_SHORT_CASE, folder, changes, true);
+  const double before = cpu_of_children();
+  double counted = 0;
+  for (const int signal : {SIGTERM, SIGKILL}) {
+    testing::ChildProgram run = start(scratch, words);
+    ASSERT_TRUE(has_rows(folder, signal == SIGTERM ? 4 : 14, run));
+    run.send(signal);
+    run.end();
+    const json times =
+        json::parse(contents_of(folder + (signal == SIGTERM ? "/run.json" : "/times.checkpoint")));
+    EXPECT_GT(times["seconds_cpu"].get<double>(), counted);
+    counted = times["seconds_cpu"].get<double>();
+  }
+  const double spent = cpu_of_children() - before;
+  EXPECT_LE(counted, spent);
+  flexmorph(scratch, words);
+  const json run = run_json(folder);
+  const double all = run["seconds_cpu"].get<double>();
+  EXPECT_GT(all, counted);
+  EXPECT_LE(all, cpu_of_children() - before);
+  // What is not counted is the time of the killed call after its last report, and the end of calls.
+  EXPECT_GE(all - counted, 0.5 * (cpu_of_children() - before - spent));
+  double phases = 0;
+  for (const json& seconds : run["seconds_by_phase"]) phases += seconds.get<double>();
+  EXPECT_GT(phases, 0);
+  EXPECT_FALSE(fs::exists(folder + "/times.checkpoint"));
 }
 
 TEST(Resume, RefusesAnotherCase) {
