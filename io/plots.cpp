@@ -15,7 +15,12 @@ namespace {
 // thin lines.
 constexpr std::array<const char*, 7> kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                 "#b8860b", "#56b4e9", "#444444"};
+constexpr const char* kDashed = "6 4";
+/// Dashes of curves by which curves of equal colour differ.
+constexpr std::array<const char*, 4> kDashes = {"", "10 3", "2 3", "10 3 2 3"};
 constexpr double kLeft = 88, kRight = 22, kTop = 34, kBottom = 52, kLegendRow = 20;
+/// Rows of a legend that belong to the height of a diagram; more rows make the page higher.
+constexpr int kIncludedRows = 3;
 constexpr double kLetter = 6.6;  // mean width of a letter at 12 px
 
 std::string px(double value) { return to_text(std::round(value * 100) / 100); }
@@ -147,10 +152,12 @@ std::string grid_lines(const Scale& x, const Scale& y) {
 }
 
 std::string style_of(const Curve& curve, size_t index) {
-  return std::string(" stroke=\"") + kColors[curve.color.value_or(index) % kColors.size()] +
-         "\" stroke-width=\"" + (curve.thin ? "0.6" : "1.7") +
-         "\" fill=\"none\" stroke-linejoin=\"round\"" +
-         (curve.dashed ? " stroke-dasharray=\"6 4\"" : "");
+  const size_t number = curve.color.value_or(index);
+  const size_t repetition = curve.name.empty() ? 0 : number / kColors.size();
+  const std::string dashes = curve.dashed ? kDashed : kDashes[repetition % kDashes.size()];
+  return std::string(" stroke=\"") + kColors[number % kColors.size()] + "\" stroke-width=\"" +
+         (curve.thin ? "0.6" : "1.7") + "\" fill=\"none\" stroke-linejoin=\"round\"" +
+         (dashes.empty() ? "" : " stroke-dasharray=\"" + dashes + "\"");
 }
 
 std::string marker(double x, double y, const Curve& curve, size_t index) {
@@ -225,6 +232,12 @@ std::string legend_svg(const Panel& panel, const Legend& legend, double left, do
   return out;
 }
 
+/// Returns the height of a diagram with its legend [px].
+double height_of(const Panel& panel, const Figure& figure) {
+  const int rows = lay_out_legend(panel, figure.width - kRight - kLeft).rows;
+  return figure.panel_height + kLegendRow * std::max(0, rows - kIncludedRows);
+}
+
 std::string panel_svg(const Panel& panel, double top, double width, double height) {
   const double left = kLeft, right = width - kRight;
   const Legend legend = lay_out_legend(panel, right - left);
@@ -273,7 +286,8 @@ std::vector<double> nice_ticks(double lower, double upper, int wanted) {
 
 std::string plot_svg(const Figure& figure) {
   const double head = figure.title.empty() ? 6 : 40;
-  const double height = head + static_cast<double>(figure.panels.size()) * figure.panel_height;
+  double height = head;
+  for (const Panel& panel : figure.panels) height += height_of(panel, figure);
   const std::string size = px(figure.width) + " " + px(height);
   std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + size +
                     "\" width=\"" + px(figure.width) + "\" height=\"" + px(height) +
@@ -282,9 +296,11 @@ std::string plot_svg(const Figure& figure) {
                     "fill=\"white\"/>\n";
   if (!figure.title.empty())
     out += text(kLeft, 28, xml_escaped(figure.title), "font-size=\"17\" font-weight=\"bold\"");
-  for (size_t i = 0; i < figure.panels.size(); ++i)
-    out += panel_svg(figure.panels[i], head + static_cast<double>(i) * figure.panel_height,
-                     figure.width, figure.panel_height);
+  double top = head;
+  for (const Panel& panel : figure.panels) {
+    out += panel_svg(panel, top, figure.width, height_of(panel, figure));
+    top += height_of(panel, figure);
+  }
   return out + "</svg>\n";
 }
 

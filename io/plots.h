@@ -18,7 +18,8 @@ struct Curve {
 
   /// True for a line, for markers at points, for a dashed line.
   bool line = true, markers = false, dashed = false;
-  /// Index in the list of colours; absent: the index of the curve.
+  /// Index in the list of colours; absent: the index of the curve. Curves of equal colour that have
+  /// names differ by their dashes, unless `dashed` is true.
   std::optional<size_t> color = {};
   bool thin = false;  ///< True for a thin line.
 };
@@ -39,9 +40,10 @@ struct Panel {
 
 /// A page with one or more diagrams below each other.
 struct Figure {
-  std::string title = {};               ///< Title of the page.
-  std::vector<Panel> panels = {};       ///< Diagrams from top to bottom.
-  int width = 760, panel_height = 300;  ///< Width of the page and height of a diagram [px].
+  std::string title = {};          ///< Title of the page.
+  std::vector<Panel> panels = {};  ///< Diagrams from top to bottom.
+  /// Width of the page and height of a diagram with a legend of at most three rows [px].
+  int width = 760, panel_height = 300;
 };
 
 /// Returns a page of diagrams as SVG text.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "io/plane_frames.h"
@@ -51,6 +52,31 @@ TEST(Plot, IsWellFormedAndComplete) {
   for (const char* word : {"a &lt; b &amp; c", "time [s]", "deflection [m]", "two &amp; more"})
     EXPECT_TRUE(contains(svg, word));
   EXPECT_FALSE(contains(svg, "id="));  // several figures share a page
+}
+
+// A long legend makes the page higher and not the diagram smaller, and its curves can be told
+// apart.
+TEST(Plot, OfManyCurvesIsAsHighAsOfOne) {
+  const auto svg_of = [](int n) {
+    Panel panel;
+    for (int i = 0; i < n; ++i)
+      panel.curves.push_back(
+          {.name = "max_volume = " + std::to_string(i), .x = {0, 1}, .y = {0, 1}});
+    Figure figure = figure_of(panel);
+    figure.width = 560;
+    return plot_svg(figure);
+  };
+  const auto frame_height = [](const std::string& svg) {
+    const size_t at = svg.find("height=\"", svg.rfind("<rect"));
+    return std::stod(svg.substr(at + 8));
+  };
+  const std::string many = svg_of(24);
+  EXPECT_GT(frame_height(many), 150);
+  EXPECT_GE(frame_height(many), frame_height(svg_of(7)));
+  std::set<std::string> styles;
+  for (size_t at = 0; (at = many.find("h26\"", at)) != std::string::npos; ++at)
+    styles.insert(many.substr(at, many.find("/>", at) - at));
+  EXPECT_EQ(styles.size(), 24U);
 }
 
 TEST(Plot, NonFinitePointsLeaveGaps) {
