@@ -12,9 +12,9 @@ Installs missing packages, builds everything and runs the tests.
   OPTION     option of ctest: -L, -LE, -R, -E, -I, --repeat (each with a value), -V,
              --rerun-failed, --stop-on-failure, --schedule-random; -L and -LE given several times
              name several labels
-The whole command has a time limit: FLEXMORPH_MINUTES, by default 60 (--gate: 45, --all: 100, or 220
-where debootstrap is installed). After it the tests that have begun and not ended are named and
-killed, and what did not run has failed.
+The whole command has a time limit: FLEXMORPH_MINUTES, by default 60 (--all: 100, or 220 where
+debootstrap is installed). After it the tests that have begun and not ended are named and killed,
+and what did not run has failed.
 The last line says "N passed, N failed, N skipped"; the exit code is 0 if at least one test passed
 and none failed.
 TEXT
@@ -61,7 +61,7 @@ with_tests=1
 targets=all
 limit=60
 case "$mode" in
-  gate) limit=45 build="$root/build-gate" && rm -rf "$build" ;;
+  gate) build="$root/build-gate" && rm -rf "$build" ;;
   all)
     limit=100 targets='all benchmarks'
     # Tests in bare root folders (tests/bare_root.sh) build everything two more times.
