@@ -119,7 +119,7 @@ std::span<const ResultQuantity<mmc::BodyOutcome>> design_quantities() {
        [](const O& o) -> Value { return o.evaluations; }},
       {"kkt", "-", "KKT residual of the design problem",
        [](const O& o) { return o.of_part ? Value() : Value(o.kkt); }},
-      {"factorizations", "-", "number of factorizations of the stiffness matrix",
+      {"factorizations", "-", "number of factorizations of stiffness matrices of designs",
        [](const O& o) -> Value { return o.factorizations; }},
       {"worst_compliance", "J", "largest compliance of the crisp design under one load",
        [](const O& o) -> Value { return o.worst_compliance; }},

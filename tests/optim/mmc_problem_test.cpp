@@ -184,9 +184,12 @@ TEST(MmcProblem, RefusesADesignThatHasComeApart) {
   EXPECT_TRUE(problem.acceptable(start));
   const double apart = std::exp(problem.evaluate(cut.design.x()).f);
   EXPECT_GT(apart, 100 * compliance);
+  const int counted = whole.compliance.factorizations();
   EXPECT_FALSE(problem.acceptable(cut.design.x()));
+  EXPECT_EQ(whole.compliance.factorizations(), counted);  // a resumed run compares it a second time
   problem.evaluate(start);
   EXPECT_TRUE(problem.acceptable(start));
+  EXPECT_EQ(whole.compliance.factorizations(), counted + 1);
 }
 
 // An optimizer that steps back from refused designs reports only connected designs, however long

@@ -351,15 +351,18 @@ bool MmcProblem::acceptable([[maybe_unused]] const VectorXd& x) {
          (std::isfinite(compliance()) && compliance() < kMaxCompliance * uniform_compliance());
 }
 
-/// Returns the compliance of uniform material of the allowed volume, which P compares designs with.
+/// Returns the compliance of uniform material of the allowed volume, for comparison with designs.
+/// Its factorization is not counted, because every call of a resumed run repeats it.
 double MmcProblem::uniform_compliance() {
   if (uniform_) return *uniform_;
   constexpr double kHalf = 0.5;  // volume fraction where no limit bounds the volume
   const VectorXd even =
       VectorXd::Constant(plate_.grid.n_cells(), allowed_volume(goal_).value_or(kHalf));
   ComplianceEvaluator& loads = state_.loads();
+  const ComplianceEvaluator::Work counted = loads.work();
   uniform_ = compliance_row(goal_).per_load ? loads.individual(even, even).maxCoeff()
                                             : loads.sum(even, even);
+  loads.continue_from(counted);
   return *uniform_;
 }
 
